@@ -1,26 +1,28 @@
-//! Facts: which effects a frame's scene calls for, proved on the CPU before the frame is declared.
+//! Feature culling: decides on the CPU, before a frame is declared, which effects its scene needs.
 //!
 //! ```text
-//! Scene ──> SceneSummary ─┐
-//! cameras, light ───┼─> decide ──> Facts (a row an effect) ──> apply ──> Settings ──> stages ──> Plan
-//! Settings asked ───┤      └── FactMemory, kept from frame to frame
-//! Measurement ──────┘      of frames before (`measure.rs`), where they are measured
+//! Scene ──> SceneSummary ──────┐
+//! cameras, light ──────────────┼─> decide ──> Facts (one row per effect) ──> apply ──> Settings ──> stages ──> Plan
+//! requested Settings ──────────┤      └── FactMemory, kept across frames
+//! Measurement ─────────────────┘      of previous frames, if they are measured
 //! ```
 //!
-//! | file | what |
+//! | file | content |
 //! | --- | --- |
-//! | `effect.rs`, `fact.rs` | the effects; a row: kept or dropped, the class of its proof, the reason |
-//! | `case.rs`, `decided.rs` | what rules look at; what they decide |
-//! | `survey.rs` | what is known of meshes and materials whatever the camera is |
-//! | `seen.rs`, `cover.rs` | what cameras may see; what covers the whole picture |
-//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs`, `lens.rs`, `overdraw.rs`, `late.rs` | the rules |
-//! | `memory.rs` | effects do not flicker at thresholds |
-//! | `apply.rs` | facts into settings |
-//! | `savings.rs`, `told.rs` | what each drop saves; text and JSON |
+//! | `effect.rs`, `fact.rs` | effects; a decision: kept or dropped, its bound, its reason |
+//! | `rule_input.rs`, `decided.rs` | input and output of the rules |
+//! | `scene_summary.rs` | camera-independent properties of meshes and materials |
+//! | `visibility.rs`, `occluders.rs` | visible instances; occluders that cover the whole picture |
+//! | `shadows.rs`, `shading.rs`, `screen.rs`, `picture.rs`, `lens.rs`, `overdraw.rs`, `readback_rules.rs` | rules |
+//! | `memory.rs` | hysteresis, so that effects do not flicker at thresholds |
+//! | `apply.rs` | applies decisions to settings |
+//! | `savings.rs`, `report.rs` | savings of each dropped effect; report as text and JSON |
 //!
-//! Rules are conservative: bounds are of boxes and factors, what is unknown is kept, and what is dropped is dropped with its
-//! readers: shaders are other variants then, so that nothing reads a texture that nobody wrote. `docs/design/feature-culling.md` has every rule
-//! with its bound.
+//! Rules are conservative: they use bounds, and keep an effect if a value is unknown. A dropped effect declares no
+//! pass, and shaders are compiled without it. `docs/design/feature-culling.md` has every rule with its bound.
+//!
+//! This folder may use [`frame`](crate::frame), [`effects`](crate::effects) and every folder that these use. Only
+//! [`quality`](crate::quality) may use it.
 
 mod apply;
 mod decided;
@@ -52,7 +54,7 @@ pub use scene_summary::SceneSummary;
 
 use rule_input::RuleInput;
 
-/// Decides which effects the frame needs. `memory` is that of the frame before, or a new one.
+/// Decides which effects the frame needs. Pass the `memory` of the previous frame, or a new one.
 #[must_use]
 pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
     let case = RuleInput::new(input, memory);
@@ -79,7 +81,7 @@ pub fn decide(input: &FactInput<'_>, memory: &mut FactMemory) -> Facts {
         row.decision = Decision::Kept;
         row.reason = format!("{}; it goes in {} frames", row.reason, memory.waits(row.effect));
     }
-    // What goes because another does stays while that stays.
+    // Effects that depend on another effect stay while that effect stays.
     for (effect, with) in [
         (Effect::OcclusionShading, Effect::Occlusion),
         (Effect::Cascades, Effect::SunShadows),

@@ -1,27 +1,31 @@
-//! The standard frame: which passes, composed into one graph.
+//! The standard frame: all effects as passes of one graph.
 //!
-//! [`stages`] is the frame as a value: named stages, in which an application inserts its own and replaces what it does
-//! otherwise. [`standard`] declares them as they are.
+//! [`stages`] returns the frame as named stages, which an application can extend and replace. [`standard`] declares
+//! them unchanged.
 //!
-//! | stage | passes | takes | hands on |
+//! | stage | passes | reads | provides |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow`, or a pass a layer of maps; `structure` for contact shadows | | shadow maps, structure |
+//! | `shadow` | `shadow`, or one pass for each layer; `structure` for contact shadows | | shadow maps, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
-//! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | the radiance of the frame before | structure, reflections, where radiance goes |
-//! | `prepass` | `prepass`, `velocity`, where they are drawn | | depth, velocity |
-//! | `color` | `color` | depth if it was drawn, shadow maps, structure, ambient occlusion, reflections | radiance, depth |
-//! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | the picture of what is behind transmissive surfaces |
-//! | `transparent` | `transparent`; `blended/…` where blended surfaces need no order | all of these | radiance, depth |
-//! | `resolve` | `tone_resolve` | samples of radiance | radiance |
-//! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, what the frames before came to | radiance |
-//! | `measure` | `measure/light`, `measure/depth`, `measure/smaller` | radiance, depth | what is read back of them |
+//! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | radiance of the previous frame | structure, reflections, target of the radiance |
+//! | `prepass` | `prepass`, `velocity`, if requested | | depth, motion vectors |
+//! | `color` | `color` | depth (with a prepass), shadow maps, structure, ambient occlusion, reflections | radiance, depth |
+//! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | picture behind refractive surfaces |
+//! | `transparent` | `transparent`; `blended/…` for order-independent transparency | all of the above | radiance, depth |
+//! | `resolve` | `tone_resolve` | multisampled radiance | radiance |
+//! | `taa` | `depth_resolve`, `taa`, `taa_sharpen` | radiance, depth, history | radiance |
+//! | `measure` | `measure/light`, `measure/depth`, `measure/smaller` | radiance, depth | readback of luminance and depth |
 //! | `dof` | `dof/coc`, `dof/level`…, `dof/tiles`, `dof/dilate`, `dof/gather`, `dof/median`, `dof/combine` | radiance, depth | radiance |
-//! | `bloom` | `bloom/half`…, `bloom/first`, `bloom/down`…, `bloom/flare`, `bloom/flare_blur` twice, `bloom/up`… | radiance | what glows, lens flare |
-//! | `post` | `post`, or one an effect | radiance, what glows, lens flare, dirt on the lens | picture |
+//! | `bloom` | `bloom/half`…, `bloom/first`, `bloom/down`…, `bloom/flare`, `bloom/flare_blur` twice, `bloom/up`… | radiance | bloom, lens flare |
+//! | `post` | `post`, or one pass for each effect | radiance, bloom, lens flare, lens dirt | picture |
 //! | `fxaa` | `fxaa` | picture | picture |
 //! | `upscale` | `upscale`, `upscale_sharpen` | picture | picture |
 //!
-//! All stages are there whatever the settings are; one that a frame does not need declares nothing.
+//! The *structure* is the depth pyramid of the visible surfaces. Every stage exists with every setting. A stage that a
+//! frame does not need declares no pass.
+//!
+//! This folder may use every other folder of the crate. Only [`feature_culling`](crate::feature_culling) and
+//! [`quality`](crate::quality) may use it.
 
 mod before;
 mod blended;
@@ -70,7 +74,7 @@ use lens::{bloom, dof, mix_of};
 use picture::{PostWay, fxaa};
 use shadows::{maps_of, shadow};
 
-/// What the passes of the standard frame need of the world that they are recorded with.
+/// Parts of the world that the standard frame reads.
 pub trait StandardWorld:
     AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + AsRef<FrameIndex> + AsRef<GradingTables> + 'static
 {
@@ -88,87 +92,90 @@ impl<W> StandardWorld for W where
 {
 }
 
-/// What the frame is made of.
+/// Settings of the standard frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Settings {
     /// Samples per texel of the color pass: 1 or 4.
     pub samples: u8,
-    /// Samples are averaged as a display would show them, by a pass of its own ([`ToneResolve`]): edges before what is bright are
-    /// smooth where something reads radiance before it is graded. Off as in Filament.
+    /// Resolves multisampled radiance with tone-mapped weights, in a separate pass ([`ToneResolve`]). Edges in front
+    /// of bright surfaces stay smooth if an effect reads radiance before it is graded. False by default, as in
+    /// Filament.
     pub tone_resolve: bool,
-    /// How surfaces are shaded.
+    /// Settings of surface shading.
     pub shading: Shading,
-    /// How shadows are made, if any are.
+    /// Settings of shadow maps; `None` disables shadows.
     pub shadows: Option<ShadowSettings>,
-    /// Ambient occlusion from what the picture shows; off as in Filament.
+    /// Screen-space ambient occlusion; `None` by default, as in Filament.
     pub occlusion: Option<OcclusionSettings>,
-    /// Reflections of what the picture shows, from the radiance of the frame before, which is kept for that and graded in a
-    /// pass of its own; off as in Filament. Views of one graph that have them are declared in scopes of their own.
+    /// Screen-space reflections, traced in the radiance of the previous frame; `None` by default, as in Filament. The
+    /// radiance becomes a history, and a separate pass grades it. Declare each view of a graph with reflections in its
+    /// own scope.
     pub reflections: Option<ReflectionSettings>,
-    /// Levels of reflections, which rough surfaces blur them with, at most as many as their size has; see
-    /// [`scene_levels`].
+    /// Number of levels of the reflections, which blur them for rough surfaces; at most [`scene_levels`] of the size.
     #[cfg_attr(feature = "files", serde(skip))]
     pub reflection_levels: u8,
-    /// Levels of the structure that effects look around in, at most as many as its size has; see [`structure_levels`]. With
-    /// one level they are as right, but slower.
+    /// Number of levels of the structure, at most [`structure_levels`] of its size. Fewer levels are slower, but as
+    /// accurate.
     #[cfg_attr(feature = "files", serde(skip))]
     pub structure_levels: u8,
-    /// Fog before surfaces and sky, none without density; off as in Filament.
+    /// Height fog in front of surfaces and sky; `None` by default, as in Filament.
     pub fog: Option<FogSettings>,
-    /// Depth of field; off as in Filament.
+    /// Depth of field; `None` by default, as in Filament.
     pub dof: Option<DofSettings>,
-    /// What glows, and lens flare; off as in Filament. Post-processing is then a pass of its own.
+    /// Bloom and lens flare; `None` by default, as in Filament. Post-processing is then a separate pass.
     pub bloom: Option<BloomSettings>,
-    /// Size of the picture that levels of bloom and of depth of field are made for, in texels: of another they are as right, and
-    /// glow as far in shares of this one. [`Settings::for_scene`] sets it.
+    /// Picture size for which the levels of bloom and depth of field are chosen, in texels. At another size, blur
+    /// radii keep their fraction of this size. [`Settings::for_scene`] sets it.
     #[cfg_attr(feature = "files", serde(skip))]
     pub size_texels: [u32; 2],
-    /// Some surface blends: the color pass then says so, and cannot be graded in place.
+    /// True if a surface blends. The color pass then cannot be graded in place.
     #[cfg_attr(feature = "files", serde(skip))]
     pub blended: bool,
-    /// Some material tests or writes stencil: depth then has it. Filament's `View::setStencilBufferEnabled`.
+    /// True if a material tests or writes stencil. The depth texture then has stencil, as with Filament's
+    /// `View::setStencilBufferEnabled`.
     #[cfg_attr(feature = "files", serde(skip))]
     pub stencil: bool,
-    /// Some blended surface writes depth ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
+    /// True if a blended surface writes depth
+    /// ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
     #[cfg_attr(feature = "files", serde(skip))]
     pub blended_depth: bool,
-    /// How blended surfaces are put in order.
+    /// Technique for blended surfaces: sorted, or order-independent.
     pub transparency: Transparency,
-    /// Levels of the picture that transmissive surfaces show what is behind them with, at most as many as
-    /// [`scene_levels`] of the frame's size; 0: no surface transmits.
+    /// Number of levels of the picture behind refractive surfaces, at most [`scene_levels`] of the frame's size. 0 if
+    /// no surface is refractive.
     #[cfg_attr(feature = "files", serde(skip))]
     pub scene_levels: u8,
-    /// Layers of glass that is seen through glass, 1 to [`MAX_GLASS_LAYERS`]: in 1 all glass shows what is opaque alone. What
-    /// lies farther back than there are layers is in the last of them.
+    /// Number of refractive layers visible through each other, 1 to [`MAX_GLASS_LAYERS`]. With 1, refractive surfaces
+    /// show only opaque ones. The last layer includes everything farther back.
     pub glass_layers: u8,
-    /// Depth is drawn before surfaces are shaded, so that each pixel is shaded once. Without, what overlaps is shaded several times, and
-    /// triangles are drawn once less; where velocity is drawn, over the depth, there is a prepass anyway. The picture is the same.
+    /// Draws depth before shading, so that each pixel is shaded once. Without a prepass, hidden surfaces may be shaded
+    /// too, and triangles are drawn once less. Motion vectors require the prepass. The picture does not change.
     pub prepass: bool,
-    /// Draw what stands behind everything; without it, what no surface covers is black.
+    /// Draws the background. Without it, uncovered pixels are black.
     pub sky: bool,
-    /// Frames are added up; who makes the view jitters it ([`TaaSettings::jitter_px`]). Off as in Filament. Views of one graph
-    /// that have it are declared in scopes of their own.
+    /// Temporal anti-aliasing; `None` by default, as in Filament. The caller jitters the view
+    /// ([`TaaSettings::jitter_px`]). Declare each view of a graph with TAA in its own scope.
     pub taa: Option<TaaSettings>,
-    /// Something moves: where it was is drawn for what adds frames up.
+    /// True if something moves. TAA then draws motion vectors.
     #[cfg_attr(feature = "files", serde(skip))]
     pub moving: bool,
-    /// What is measured of the frame for the facts of those after it; [`Facts::apply`](crate::Facts::apply) sets it.
+    /// Values measured in the frame for feature culling in later frames; set by [`Facts::apply`](crate::Facts::apply).
     #[cfg_attr(feature = "files", serde(skip))]
     pub measure: Measure,
-    /// Soften edges of the finished picture.
+    /// Fast approximate anti-aliasing of the finished picture.
     pub fxaa: bool,
-    /// Draw less than is shown, and make the picture larger. The view is then one of [`Upscale::extent`].
+    /// Renders at a lower resolution and upscales the picture. Make the view at the size of [`Upscale::extent`].
     pub upscale: Option<Upscale>,
     /// Exposure compensation, vignette, grading, tone curve and dither.
     pub post: PostSettings,
     /// Format of the radiance between shading and post-processing.
     pub hdr_format: Format,
-    /// Every point-wise effect is a pass of its own, instead of all in one.
+    /// Declares a pass for each point-wise effect, instead of one for all.
     pub split_post: bool,
-    /// Where post-processing is inlined into the color pass, round the radiance first as this device would on the way
-    /// through a texture: the picture is then the same to the bit as without inlining, at one sample per texel. None
-    /// grades what was shaded in 32 bits.
+    /// Rounding of the radiance if post-processing is inlined into the color pass, as this device rounds a stored
+    /// texture. The picture then equals the one without inlining bit for bit, at one sample per texel. `None` grades
+    /// 32-bit radiance.
     #[cfg_attr(feature = "files", serde(skip))]
     pub stored: Option<StoreRounding>,
 }
@@ -214,7 +221,7 @@ impl Settings {
         stored: None,
     };
 
-    /// The same frame with the passes that the scene's materials call for, in a picture of this size.
+    /// Returns the frame with the passes that the scene's materials need, for a picture of this size.
     #[must_use]
     pub fn for_scene(self, scene: &Scene, size_texels: [u32; 2]) -> Self {
         let transmits = scene.lobes().contains(Lobe::Transmission);
@@ -249,40 +256,40 @@ impl Settings {
         self.extent().texels(shown_px)
     }
 
-    /// Whether velocity of what moves is drawn.
+    /// Returns true if motion vectors are drawn.
     pub(crate) fn draws_velocity(&self) -> bool {
         self.moving && self.taa.is_some()
     }
 
-    /// Whether depth is drawn before the color pass.
+    /// Returns true if depth is drawn before the color pass.
     fn draws_prepass(&self) -> bool {
         self.prepass || self.draws_velocity()
     }
 
-    /// Whether blended surfaces have passes of their own.
+    /// Returns true if blended surfaces have separate passes.
     fn draws_blended_apart(&self) -> bool {
         self.blended && self.transparency.is_unordered()
     }
 
-    /// Whether blended surfaces are drawn over the picture that depth of field has blurred.
+    /// Returns true if blended surfaces are drawn after depth of field.
     fn blends_after_blur(&self) -> bool {
         let wanted = self.dof.is_some_and(|dof| dof.blended_after && dof.is_seen());
         wanted && self.draws_blended_apart() && self.samples == 1 && self.taa.is_none()
     }
 
-    /// How blended surfaces are put in order, where there are any.
+    /// Returns the technique for blended surfaces; `Sorted` if there are none.
     fn declared_transparency(&self) -> Transparency {
         if self.blended { self.transparency } else { Transparency::Sorted }
     }
 
-    /// Size and levels of the structure: those that ambient occlusion wants, which shares it with what needs any.
+    /// Returns the resolution and the number of levels of the structure, which all effects share.
     fn structure(&self) -> (Resolution, u8) {
         let resolution = self.occlusion.map_or(Resolution::Full, |occlusion| occlusion.resolution);
         (resolution, self.structure_levels)
     }
 }
 
-/// How many instances transmit, at least one and at most as many as there may be layers.
+/// Returns the number of refractive instances, clamped to 1…[`MAX_GLASS_LAYERS`].
 fn glass_instances(scene: &Scene) -> u8 {
     let transmits = |m: MaterialId| scene.materials[m.index()].lobes().contains(Lobe::Transmission);
     let count = scene.instances.iter().filter(|instance| transmits(instance.material)).count();
@@ -296,14 +303,14 @@ pub struct FrameIo {
     pub hdr: Texture,
     /// The finished picture.
     pub output: Texture,
-    /// What was measured, read back.
+    /// Readbacks of the measured values.
     pub measured: MeasuredTextures,
 }
 
-/// Declares the standard frame of the main view, its picture going into `into`.
+/// Declares the standard frame of the main view and writes its picture to `into`.
 ///
 /// # Errors
-/// What a pass refuses: a target of another graph, or of a format that cannot be drawn into.
+/// Fails if `into` is of another graph, or of a format that cannot be rendered to.
 pub fn standard<W: StandardWorld + ?Sized>(
     frame: &mut Frame<W>,
     settings: &Settings,
@@ -314,7 +321,7 @@ pub fn standard<W: StandardWorld + ?Sized>(
     Ok(FrameIo { hdr, output, measured: MeasuredTextures::of(&handles) })
 }
 
-/// The stages of the standard frame. See the [module](self).
+/// Returns the stages of the standard frame. See the [module](self).
 pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let s = *settings;
     let fxaa = match s.fxaa {
@@ -332,7 +339,7 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog, transparency };
     Stages::of([
         Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
-        // Before the prepass, so that nothing comes between that and the color pass: they share a step.
+        // Declared before the prepass, so that no pass separates prepass and color pass: they share a step.
         Stage::new("occlusion", move |frame, handles| {
             occlusion(frame, handles, s.occlusion, (s.structure_levels, s.shading.precision))
         }),
@@ -390,7 +397,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         sky,
         format: hdr_format,
         into: match handles.find(Slot::HDR_HISTORY) {
-            // The last pass over blended surfaces draws into it.
+            // The last pass that draws blended surfaces writes into it.
             Some(history) if !settings.draws_blended_apart() || settings.blends_after_blur() => history.into(),
             _ => Target::New,
         },

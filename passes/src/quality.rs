@@ -1,10 +1,13 @@
-//! The frame within a budget: which choices it has, what their options were measured to take and to err by, and the set of
-//! options that fits a time or an error.
+//! Presets and budgets: groups of options with their measured time and error, and the sets that fit a time or an
+//! error.
 //!
-//! [`GROUPS`] are the choices, each with its options from the cheapest to the finest; the frame with the finest of each is the
-//! *reference*. [`Measured`] says what each option takes and how far its picture is from the reference's.
-//! [`Offers::within_ms`] and [`Offers::within_codes`] choose, and [`settle()`] tries what was chosen and learns from how it
-//! turned out. Nothing here draws: the caller does, and reports times and errors.
+//! [`GROUPS`] has the groups, each with its options from the cheapest to the finest. The frame with the finest option
+//! of each group is the *reference*. [`Measured`] has the time of each option and the error of its picture against the
+//! reference. [`Offers::within_ms`] and [`Offers::within_codes`] choose a set. [`settle()`] measures the choice and
+//! corrects it. The caller draws, and reports times and errors.
+//!
+//! This folder may use [`feature_culling`](crate::feature_culling), [`frame`](crate::frame) and every folder that
+//! these use. No other folder uses it.
 
 mod groups;
 mod measured;

@@ -1,4 +1,4 @@
-//! The standard frame as a value: stages are inserted and replaced by name, and what they do wrong is said in words.
+//! Tests of the standard frame as a value: stages are inserted and replaced by name, and errors are explained.
 
 use framegraph::{Extent, Format, Graph, Intent, Target, Texture, TextureDesc};
 use framegraph_passes::effects::depth::resolve::{DepthOf, single_sample_depth};
@@ -10,7 +10,7 @@ type Frames = Frame<World>;
 
 const FOUR: Settings = Settings { samples: 4, ..Settings::DEFAULT };
 
-/// Names of the passes, in order.
+/// Returns the names of the passes, in order.
 fn passes(graph: &Graph) -> Vec<&str> {
     graph.pass_ids().map(|pass| graph.pass_name(pass)).collect()
 }
@@ -23,7 +23,7 @@ fn declare(stages: &Stages<World>) -> Result<(Frames, Handles), StageError> {
     Ok((frame, handles))
 }
 
-/// A pass that reads `from` and writes a new texture of that shape, or into `target`.
+/// Adds a pass that reads `from` and writes `target`, or a new texture with `desc`.
 fn filter(
     frame: &mut Frames,
     name: &str,
@@ -39,7 +39,7 @@ fn filter(
     Ok(frame.add_fn(name, declare, |_, _, _| Ok(()))?)
 }
 
-/// A stage that puts the radiance through a filter into a texture of that shape.
+/// Returns a stage that filters the radiance into a new texture.
 fn radiance(name: &'static str, desc: TextureDesc) -> Stage<World> {
     Stage::new(name, move |frame, handles| {
         let filtered = filter(frame, name, handles.get(Slot::HDR)?, Target::New, desc)?;
@@ -48,7 +48,7 @@ fn radiance(name: &'static str, desc: TextureDesc) -> Stage<World> {
     })
 }
 
-/// A stage that puts the picture through a filter into its target.
+/// Returns a stage that filters the picture into its target.
 fn picture(name: &'static str) -> Stage<World> {
     Stage::picture(name, move |frame, handles| {
         let desc = TextureDesc::new(handles.extent(), Format::Rgba8Unorm);
@@ -105,12 +105,12 @@ fn stages_are_inserted_and_replaced_where_they_are_named() -> Result<(), StageEr
     assert_eq!(passes(frame.graph()), ["shadow", "prepass", "color", "fog", "glow", "post", "smaa"]);
     let name = |slot| frame.graph().resource_of(handles.get(slot).ok()?).map(|r| frame.graph().resource_name(r));
     assert_eq!((name(Slot::HDR), name(Slot::PICTURE)), (Some("glow"), Some("output")));
-    // What is declared again is the same again.
+    // Declaring the same stages again gives the same passes.
     assert_eq!(passes(declare(&stages)?.0.graph()), passes(frame.graph()));
     Ok(())
 }
 
-/// The last stage that makes the picture draws into the frame's target, and those before into textures of their own.
+/// The last stage that writes the picture renders to the frame's target; earlier ones render to their own textures.
 #[test]
 fn the_last_picture_goes_into_the_target() -> Result<(), StageError> {
     let mut stages = stages(&Settings { fxaa: false, ..Settings::DEFAULT });
@@ -164,7 +164,7 @@ fn what_a_stage_does_not_hand_on_is_named_by_the_stage_that_needs_it() -> Result
     silent.replace(Stage::picture("post", |_, _| Ok(())))?;
     assert_eq!(declare(&silent).err(), Some(StageError::Missing { stage: "fxaa", slot: "picture" }));
 
-    // An old handle: the filter wrote a newer one.
+    // A stale handle: the filter has written a newer version.
     let mut stale = stages(&Settings::DEFAULT);
     stale.insert_after(
         "color",
@@ -192,7 +192,8 @@ fn a_picture_beside_the_target_is_named() -> Result<(), StageError> {
     Ok(())
 }
 
-/// Surfaces that transmit are drawn into the samples: averaging them would undo a stage that changed only the average.
+/// Refractive surfaces render to the multisampled texture. Resolving it would undo a stage that changed only the
+/// resolved one.
 #[test]
 fn a_stage_whose_result_would_be_lost_is_named() -> Result<(), StageError> {
     for (samples, after, sound) in [(1, "color", true), (4, "color", false), (4, "transparent", true)] {
@@ -205,7 +206,8 @@ fn a_stage_whose_result_would_be_lost_is_named() -> Result<(), StageError> {
     Ok(())
 }
 
-/// A depth of one sample is made when the first stage asks, serves all that ask alike, and costs nothing at one sample.
+/// A single-sample depth is resolved when the first stage requests it, and shared by equal requests. Without MSAA it
+/// costs nothing.
 #[test]
 fn one_depth_a_texel_is_made_on_request() -> Result<(), StageError> {
     let ask = |name, which| {
@@ -226,7 +228,7 @@ fn one_depth_a_texel_is_made_on_request() -> Result<(), StageError> {
     assert_eq!(resolves(&FOUR, &[ao, fog])?, 1, "two ask alike");
     assert_eq!(resolves(&FOUR, &[ao, ("color", "fog", DepthOf::Farthest)])?, 2, "two ask for different ones");
     assert_eq!(resolves(&Settings::DEFAULT, &[ao, fog])?, 0, "one sample is enough");
-    // Surfaces that transmit change the depth.
+    // Refractive surfaces change the depth.
     let transmits = Settings { scene_levels: 2, ..FOUR };
     assert_eq!(resolves(&transmits, &[ao, ("transparent", "fog", DepthOf::Nearest)])?, 2);
     Ok(())

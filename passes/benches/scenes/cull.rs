@@ -1,4 +1,4 @@
-//! Which of many boxes a camera may see.
+//! Benchmark of frustum culling of many boxes.
 
 use super::median_of;
 use super::workload::Workload;
@@ -26,7 +26,7 @@ pub fn print() {
             shuffle(&mut boxes);
         }
         let arrays = BoxArrays::new(&boxes);
-        // From amid them: most are not seen.
+        // From the center of the boxes, where most are invisible.
         let mut camera = workload.camera(0);
         camera.eye = DVec3::splat(0.5 * side as f64);
         let frustum = Frustum::of_camera(&camera, 16.0 / 9.0);
@@ -50,7 +50,7 @@ pub fn print() {
         };
         let (one, two) = (on(None), on(workers.as_ref().and_then(Workers::pool)));
         let cell = |(median, least): (f64, f64)| format!("{median:.3} ({least:.3})");
-        // Of the fastest, which other programs disturb least.
+        // Uses the fastest run, which other programs disturb least.
         program::line(format_args!(
             "| {count} | {order} | {} | {} | {} | {} | {:.2} |",
             found.len(),
@@ -63,7 +63,7 @@ pub fn print() {
     program::line("");
 }
 
-/// Puts boxes in no order, always the same.
+/// Shuffles boxes, reproducibly.
 fn shuffle(boxes: &mut [Aabb]) {
     let mut state = 1_u64;
     for last in (1..boxes.len()).rev() {

@@ -1,4 +1,4 @@
-//! Whole frames of large scenes.
+//! Benchmark of whole frames of large scenes.
 
 use super::cpu_ms;
 use super::workload::Workload;
@@ -16,7 +16,7 @@ use std::time::Instant;
 
 const SIZE_PX: [u32; 2] = [1280, 720];
 const FRAMES: usize = 60;
-/// The first frames make what later ones find.
+/// Number of warm-up frames, which fill caches.
 const WARM_UP: usize = 3;
 
 const WORKLOADS: [Workload; 5] = [
@@ -78,7 +78,7 @@ fn row(gpu: &Gpu, workload: &Workload) -> Result<(), Box<dyn Error>> {
     let (mut plan, options) = (Plan::new(), Options::for_frame(SIZE_PX[0], SIZE_PX[1]));
     compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
     let mut executor = Executor::new(gpu);
-    // CPU time advances in the ticks of the system, so that only a sum over frames means anything.
+    // CPU time advances in ticks of the system, so only the sum over frames is meaningful.
     let (mut spans, mut least_ms) = ([0.0; 3], f64::INFINITY);
     for number in 0..WARM_UP + FRAMES {
         let start = Instant::now();

@@ -4,18 +4,19 @@ use framegraph_scene::geometry::cuboid;
 use framegraph_scene::{Camera, Light, Material, MaterialId, MeshId, Projection, Scene};
 use glam::{DMat4, DVec3, Vec3};
 
-/// What a scene is made of.
+/// Contents of a benchmark scene.
 #[derive(Clone, Copy)]
 pub struct Workload {
     pub nodes: usize,
     pub meshes: usize,
     pub materials: usize,
-    /// Any mesh comes with any material, so that hardly two nodes have both in common; else each material has one mesh.
+    /// True if meshes and materials are combined at random, so that few nodes share both; otherwise each material has
+    /// one mesh.
     pub mixed: bool,
 }
 
 impl Workload {
-    /// Nodes that share mesh and material.
+    /// Returns a scene of nodes that share mesh and material.
     pub const fn alike(nodes: usize) -> Self {
         Self { nodes, meshes: 1, materials: 1, mixed: false }
     }
@@ -25,7 +26,7 @@ impl Workload {
         format!("{meshes} × {materials}{}", if *mixed { ", mixed" } else { "" })
     }
 
-    /// Boxes of different sizes and colors in a cube of space, and a sun.
+    /// Returns boxes of different sizes and colors in a cube, and a sun.
     pub fn scene(&self) -> Scene {
         let mut scene = Scene { name: "boxes".into(), ..Scene::default() };
         for i in 0..self.meshes {
@@ -49,7 +50,7 @@ impl Workload {
         scene
     }
 
-    /// Before the cube, turning with the frames; all of it is in view.
+    /// Returns a camera in front of the cube that rotates with the frames; the whole cube is in view.
     pub fn camera(&self, frame: usize) -> Camera {
         let side = (self.nodes as f64).cbrt();
         let middle = DVec3::splat(0.5 * side);

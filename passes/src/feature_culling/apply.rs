@@ -97,14 +97,14 @@ impl Settings {
         s
     }
 
-    /// Whether they ask for an effect.
+    /// Returns true if the settings request an effect.
     #[must_use]
     pub fn has(&self, effect: Effect) -> bool {
         *self != self.without(effect)
     }
 }
 
-/// Settings without an effect, or with as much of it as the amounts say.
+/// Returns settings without an effect, or with the reduced amounts.
 fn less(settings: Settings, effect: Effect, amounts: &Amounts) -> Settings {
     let mut s = settings;
     match effect {

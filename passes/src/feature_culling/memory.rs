@@ -14,7 +14,7 @@ const MARGIN: f64 = 0.1;
 pub struct FactMemory {
     /// Consecutive frames that did not need each effect, at most [`PATIENCE`].
     calm: [u8; Effect::ALL.len()],
-    /// Whether a frame was decided before.
+    /// True after the first frame.
     begun: bool,
 }
 

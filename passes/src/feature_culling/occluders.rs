@@ -1,24 +1,25 @@
-//! Whether one opaque thing covers the whole picture, so that nothing behind it is seen.
+//! Detection of one opaque instance that covers the whole picture and hides everything behind it.
 //!
-//! What a camera sees of the picture is cut by the triangles of one instance after the other: of each polygon that is left,
-//! the parts outside of the triangle stay. Triangles of one mesh share the edges between them, which devices draw without
-//! gaps; things that cover the picture only together are not looked for.
+//! The triangles of one instance are subtracted from the picture one after another. The parts of each remaining
+//! polygon outside the triangle stay. Triangles of one mesh share edges, which devices rasterize without gaps.
+//! Instances that cover the picture only together are not detected.
 
 use super::visibility::{Visibility, fit_camera};
 use crate::gpu_scene::view::ViewSettings;
 use framegraph_scene::{Aabb, AlphaMode, Instance, Mesh};
 use glam::{DMat4, DVec2, DVec4};
 
-/// Meshes of more triangles are not looked at.
+/// Maximum number of triangles of a tested mesh.
 const MAX_TRIANGLES: usize = 4096;
-/// What is left of a picture in more parts than this is taken to be seen.
+/// Maximum number of remaining parts. With more, the background counts as visible.
 const MAX_PARTS: usize = 256;
-/// Parts of the picture smaller than this, of the 4 that it has in clip space, are the edges' rounding.
+/// Minimum area of a remaining part, of the 4 of the picture in clip space. Smaller parts are rounding errors of
+/// edges.
 const LEAST_AREA: f64 = 1e-12;
 
 type Polygon = Vec<DVec2>;
 
-/// The name of what covers the picture of each view; none where a view may show what is behind everything.
+/// Returns the name of the instance that covers each view's picture; `None` if a view may show the background.
 pub(super) fn covers<'a>(seen: &Visibility<'a>, views: &[ViewSettings]) -> Option<&'a str> {
     let mut name = None;
     for (view, lists) in views.iter().zip(&seen.lists) {
@@ -42,7 +43,7 @@ fn instance_covers(instance: &Instance, mesh: &Mesh, double_sided: bool, view: &
         * DMat4::from_quat(view.camera.world_from_view.inverse())
         * DMat4::from_translation(-view.camera.eye)
         * instance.world_from_model;
-    // A pixel more on each side, since frames that are added up are moved by parts of pixels.
+    // One more pixel on each side, since TAA jitters by fractions of a pixel.
     let [x, y] = view.size_px.map(|side| 1.0 + 2.0 / f64::from(side.max(1)));
     if !box_covers(&mesh.bounds, &clip_from_model, DVec2::new(x, y)) {
         return false;
@@ -67,7 +68,8 @@ fn instance_covers(instance: &Instance, mesh: &Mesh, double_sided: bool, view: &
     left.is_empty()
 }
 
-/// Whether the box of a mesh may cover the picture: it is about the eye, or the rectangle about its corners holds it.
+/// Returns true if the box of a mesh may cover the picture: it contains the eye, or the rectangle around its corners
+/// contains the picture.
 fn box_covers(bounds: &Aabb, clip_from_model: &DMat4, picture: DVec2) -> bool {
     let corners = bounds.corners().map(|corner| *clip_from_model * corner.extend(1.0));
     if corners.iter().any(|corner| corner.w <= 0.0) {
@@ -78,9 +80,9 @@ fn box_covers(bounds: &Aabb, clip_from_model: &DMat4, picture: DVec2) -> bool {
     low.cmple(-picture).all() && high.cmpge(picture).all()
 }
 
-/// The part of a triangle between the near and the far plane, in clip space divided by w.
+/// Returns the part of a triangle between near and far plane, in clip space divided by w.
 fn project(corners: &[DVec4; 3]) -> Polygon {
-    // In front of the near plane z > w; beyond the far plane z < 0. What touches them is cut off, to be safe.
+    // In front of the near plane z > w; beyond the far plane z < 0. Points on a plane are cut off, to be conservative.
     let inside = |plane: DVec4, p: &DVec4| plane.dot(*p) - 1e-9 * p.w.abs();
     let mut polygon = corners.to_vec();
     for plane in [DVec4::new(0.0, 0.0, -1.0, 1.0), DVec4::Z] {
@@ -100,12 +102,12 @@ fn project(corners: &[DVec4; 3]) -> Polygon {
     polygon.iter().filter(|p| p.w > 0.0).map(|p| DVec2::new(p.x, p.y) / p.w).collect()
 }
 
-/// Twice the signed area, above 0 counter-clockwise.
+/// Returns twice the signed area, positive if counter-clockwise.
 fn area(polygon: &[DVec2]) -> f64 {
     polygon.iter().enumerate().map(|(i, a)| a.perp_dot(polygon[(i + 1) % polygon.len()])).sum()
 }
 
-/// The parts of a convex polygon outside of another, which is counter-clockwise.
+/// Returns the parts of a convex polygon outside another, counter-clockwise one.
 fn outside(part: &Polygon, of: &Polygon) -> Vec<Polygon> {
     let (mut parts, mut rest) = (Vec::new(), part.clone());
     for (i, a) in of.iter().enumerate() {
@@ -123,7 +125,7 @@ fn outside(part: &Polygon, of: &Polygon) -> Vec<Polygon> {
     parts
 }
 
-/// What of a convex polygon is on the side where `side` is 0 or more.
+/// Returns the part of a convex polygon where `side` is at least 0.
 fn half(polygon: &[DVec2], side: impl Fn(&DVec2) -> f64) -> Polygon {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (i, a) in polygon.iter().enumerate() {
@@ -193,7 +195,7 @@ mod tests {
         assert!(!covered(&glass, &view(above, DVec3::ZERO)));
     }
 
-    /// A room is closed all around, and open where a triangle is missing.
+    /// A closed room covers the picture; a room with a missing triangle does not.
     #[test]
     fn a_room_covers_the_picture_and_a_hole_does_not() {
         let double_sided = Material { double_sided: true, ..Material::dielectric("room", Vec3::ONE, 0.5) };

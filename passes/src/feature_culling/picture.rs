@@ -53,7 +53,7 @@ pub(super) fn rules(case: &RuleInput<'_>, facts: &mut Facts) {
     }
 }
 
-/// Whether all pixels are the same.
+/// Returns true if all pixels are equal.
 fn is_even(case: &RuleInput<'_>, empty: bool) -> bool {
     let post = &case.settings.post;
     let constant = matches!(case.input.background, Background::None | Background::Constant(_)) || !case.settings.sky;
@@ -67,7 +67,7 @@ fn dither(case: &RuleInput<'_>, empty: bool) -> Fact {
     Fact::decide(Effect::Dither, proof, is_even(case, empty), why, "the picture may have gradients")
 }
 
-/// The most pre-exposed light of the picture; infinite where something in view is lit, fogged, or a picture itself.
+/// Returns the maximum pre-exposed radiance of the picture; infinite if something visible is lit, fogged or textured.
 pub(super) fn most_light(case: &RuleInput<'_>) -> f32 {
     let settings = case.settings;
     let exposed = |nits: f32| {

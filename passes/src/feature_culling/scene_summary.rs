@@ -1,7 +1,7 @@
-//! What is known of a scene's surfaces whatever the camera is: made once, when a scene is loaded.
+//! Camera-independent properties of a scene's surfaces, computed once after loading.
 //!
-//! Textures multiply factors by numbers of 0 to 1, so a factor bounds from above what they make, and nothing bounds it from
-//! below. All of it is conservative: what is unknown is taken for what calls for most effects.
+//! Textures multiply factors by values from 0 to 1, so a factor is an upper bound of the product, and there is no
+//! lower bound. All properties are conservative: an unknown value keeps most effects.
 
 use framegraph_scene::{Instance, Lobe, Lobes, Material, Mesh, Scene};
 use glam::{DMat3, DVec3, Vec3};
@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3, Vec3};
 /// More tests of a vertex against a triangle than this are not made: the mesh counts as not convex.
 const MAX_TESTS: usize = 1 << 22;
 
-/// What is known of the surfaces of a scene.
+/// Camera-independent properties of a scene's surfaces.
 #[derive(Clone, Debug)]
 pub struct SceneSummary {
     pub(super) shapes: Vec<Shape>,
@@ -17,7 +17,7 @@ pub struct SceneSummary {
 }
 
 impl SceneSummary {
-    /// Looks at all meshes and materials of a scene. Images are not looked at, so that they may be gone.
+    /// Summarizes all meshes and materials of a scene. Images are not read and may have been freed.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let moves = |mesh: usize| scene.motion.bodies.iter().any(|body| body.mesh.index() == mesh);
@@ -44,16 +44,16 @@ impl SceneSummary {
 pub(super) struct Shape {
     /// All normals are within an angle of this cosine about an axis; none where they are within no half space.
     pub facing: Option<(DVec3, f64)>,
-    /// By how much normals turn along edges and lines, at most, in 1/m of the mesh: 0 where every triangle has one normal.
+    /// Upper bound of the curvature along edges and lines, in 1/m of the mesh: 0 if every triangle has one normal.
     pub turn_per_m: f64,
-    /// No part of it is before another.
+    /// True if no part of the mesh can hide another.
     pub convex: bool,
     /// Colors of vertices may be beyond 1.
     pub colored: bool,
 }
 
 impl Shape {
-    /// Of what may be of another shape in the next frame.
+    /// Properties of a mesh that may be deformed.
     const UNKNOWN: Self = Self { facing: None, turn_per_m: f64::INFINITY, convex: false, colored: true };
 
     fn of(mesh: &Mesh) -> Self {
@@ -66,7 +66,7 @@ impl Shape {
     }
 }
 
-/// A material.
+/// Properties of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Surface {
     pub unlit: bool,
@@ -114,13 +114,13 @@ impl Surface {
         scatters.into_iter().any(|lobe| self.lobes.contains(lobe))
     }
 
-    /// Whether it leaves depth for what looks around in the picture.
+    /// Returns true if the material is refractive, and therefore writes no depth for screen-space effects.
     pub fn transmits(&self) -> bool {
         self.lobes.contains(Lobe::Transmission)
     }
 }
 
-/// How an instance is placed: the factor from lengths of the mesh to meters of the world where it is one for all directions.
+/// Returns the uniform scale of an instance from mesh units to meters; `None` if the scale is not uniform.
 pub(super) fn even_scale(instance: &Instance) -> Option<f64> {
     let linear = DMat3::from_mat4(instance.world_from_model);
     let columns = [linear.x_axis, linear.y_axis, linear.z_axis];

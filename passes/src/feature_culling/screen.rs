@@ -5,7 +5,7 @@ use super::effect::Effect;
 use super::fact::{Fact, Proof};
 use super::rule_input::RuleInput;
 
-/// Of what keeps post-processing out of the color pass.
+/// Returns the bound for effects that keep post-processing out of the color pass.
 pub(super) fn apart(case: &RuleInput<'_>) -> Proof {
     if case.settings.samples > 1 { Proof::Edges } else { Proof::Variant }
 }
@@ -76,7 +76,7 @@ fn reflected(case: &RuleInput<'_>, reflections: &crate::ReflectionSettings) -> F
 
 fn see_through(case: &RuleInput<'_>, facts: &mut Facts) {
     let settings = case.settings;
-    // A blended surface transmits too: it is drawn with the blended ones, over the same picture of what is behind.
+    // A blended surface may be refractive too; it is drawn in the blended pass over the same background.
     let glass = case.seen.most(|lists| lists.transmit.len() + case.seen.transmissive(&lists.blend));
     let blended = case.seen.most(|lists| lists.blend.len());
     if settings.scene_levels > 0 {

@@ -10,9 +10,9 @@ use glam::Vec4;
 /// Reflectance at normal incidence up to which single scattering loses too little to be seen: that of an index of 1.5, with
 /// room for its rounding.
 const DIELECTRIC_F0: f32 = 0.0401;
-/// What compensation adds at most to a surface of that reflectance, in codes, where it is black beside (`docs/design/feature-culling.md`).
+/// Maximum contribution of energy compensation in 8-bit steps, next to black (`docs/design/feature-culling.md`).
 const COMPENSATION_CODES: f32 = 1.6;
-/// Codes of 255 that a relative change of light by 1 is worth at most, on a curve no steeper than encoding alone.
+/// Maximum number of 8-bit steps for a relative change of light by 1, on a curve no steeper than the encoding.
 const CODES_OF_LIGHT: f64 = 255.0 / 2.2;
 /// Most of the largest polynomials of the second and fourth band of irradiance over all directions.
 const BAND_2: [f32; 5] = [0.5, 0.5, 2.0, 0.5, 1.0];
@@ -89,7 +89,7 @@ fn bands(case: &RuleInput<'_>, asked: ShBands) -> (Fact, ShBands) {
         coefficients.iter().zip(peaks).map(|(c, peak)| c.abs() * *peak).sum()
     };
     let (second, fourth) = (most(&sh[4..9], &BAND_2), most(&sh[9..18], &BAND_4));
-    // Of each channel against its mean: what all directions get at least is unknown, so the mean stands for it.
+    // Each channel is compared with its mean, since the minimum over directions is unknown.
     let share = |over: Vec4| -> f64 {
         let (over, mean) = (over.truncate(), sh[0].truncate());
         let of = |(over, mean): (f32, f32)| if over == 0.0 { 0.0 } else { f64::from(over) / f64::from(mean.max(0.0)) };

@@ -5,8 +5,7 @@ use super::effect::Effect;
 use super::fact::{Fact, Proof};
 use super::rule_input::RuleInput;
 
-/// Where the farthest receiver is at most so many times as far as the nearest, one map of the sun has two texels a pixel where
-/// four would have one.
+/// Maximum ratio of the farthest to the nearest receiver for which one cascade still has half the resolution of four.
 const ONE_MAP: f64 = 1.86;
 
 pub(super) fn rules(case: &RuleInput<'_>, facts: &mut Facts) {
@@ -27,7 +26,7 @@ pub(super) fn rules(case: &RuleInput<'_>, facts: &mut Facts) {
         };
         facts.rows.push(match case.sun {
             None => row(Proof::Exact, true, "the sun lights nothing that is seen"),
-            // What a ray through the picture finds where nothing casts is the surface that it left.
+            // Without casters, a ray through the picture can only hit the surface that it started from.
             Some(_) => row(Proof::Truer, sun_dropped, "nothing casts upon what is seen"),
         });
     }
@@ -38,7 +37,7 @@ pub(super) fn rules(case: &RuleInput<'_>, facts: &mut Facts) {
     }
 }
 
-/// Why the sun's maps are not needed, if so.
+/// Returns the reason why the sun's maps are not needed, if any.
 fn why_no_sun(case: &RuleInput<'_>) -> (Proof, Option<String>) {
     let Some(risen) = case.risen else { return (Proof::Exact, Some("no sun is on".into())) };
     if case.sun.is_none() {

@@ -1,4 +1,4 @@
-//! What the cameras of a frame may see, and what is known of it together.
+//! Visible instances of a frame's cameras, and their combined properties.
 
 use super::scene_summary::{SceneSummary, even_scale};
 use crate::gpu_scene::shadow_views::FitCamera;
@@ -7,24 +7,24 @@ use framegraph_scene::{Aabb, DrawLists, Lobes, Renderables, Scene};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 
-/// Instances that are opaque or masked are compared with each other up to this many; of more, some are taken to be near.
+/// Maximum number of opaque and masked instances that are compared pairwise; with more, some count as neighbors.
 const MAX_NEIGHBOURS: usize = 64;
 
-/// What any of the cameras may see.
+/// Everything that any of the cameras may see.
 pub(super) struct Visibility<'a> {
     pub scene: &'a Scene,
     pub survey: &'a SceneSummary,
     pub renderables: Renderables,
     views: &'a [ViewSettings],
     pub lists: Vec<DrawLists>,
-    /// Numbers of instances that some camera may see, in order.
+    /// Indices of instances that some camera may see, in order.
     pub instances: Vec<usize>,
 }
 
 impl<'a> Visibility<'a> {
     pub fn new(scene: &'a Scene, survey: &'a SceneSummary, views: &'a [ViewSettings]) -> Self {
         let aspect = |view: &ViewSettings| fit_camera(view).width_over_height;
-        // What no view shows is as if it were not there.
+        // Instances that no view shows are ignored.
         let layers = views.iter().fold(0, |all, view| all | view.visible_layers);
         let all = Renderables::new(scene);
         let shown = match all.shown(layers) {
@@ -42,7 +42,7 @@ impl<'a> Visibility<'a> {
         Self { scene, survey, renderables, views, lists, instances }
     }
 
-    /// What all that is seen is made of: the sum over what is lit.
+    /// Returns the combined properties of all lit visible instances.
     pub fn surfaces(&self) -> Surfaces {
         let mut all = Surfaces::default();
         for instance in self.instances.iter().map(|i| &self.scene.instances[*i]) {
@@ -60,12 +60,12 @@ impl<'a> Visibility<'a> {
         all
     }
 
-    /// How many instances of the views' lists there are at most, of those that `list` picks.
+    /// Returns the maximum, over all views, of the number of instances that `list` returns.
     pub fn most(&self, list: impl Fn(&DrawLists) -> usize) -> usize {
         self.lists.iter().map(list).max().unwrap_or(0)
     }
 
-    /// Number of the instances of `list` whose material transmits light.
+    /// Returns the number of instances of `list` with a refractive material.
     pub fn transmissive(&self, list: &[u32]) -> usize {
         let transmits = |i: &&u32| self.survey.surface(&self.scene.instances[**i as usize]).transmits();
         list.iter().filter(transmits).count()
@@ -94,8 +94,8 @@ impl<'a> Visibility<'a> {
         axis.dot(light) * cosine + across * sine > -1e-4
     }
 
-    /// By how much a pixel turns normals at most, as the square of an angle, on what is seen at more than 15° from its edge;
-    /// infinite where it is not known.
+    /// Returns an upper bound of the squared angle in radians by which normals turn within a pixel, at least 15° from
+    /// grazing. Infinite if unknown.
     pub fn turn2(&self, variance: f32) -> f64 {
         let mut most = 0.0_f64;
         for instance in self.instances.iter().map(|i| &self.scene.instances[*i]) {
@@ -105,15 +105,15 @@ impl<'a> Visibility<'a> {
             }
             let Some(scale) = even_scale(instance) else { return f64::INFINITY };
             let pixel_m = self.views.iter().map(|view| pixel_m(view, &instance.bounds)).fold(0.0, f64::max);
-            // Visibility at 15° a pixel is four times as long on the surface.
+            // At 15°, a pixel covers four times its width on the surface.
             let turn = 4.0 * pixel_m * shape.turn_per_m / scale;
             most = most.max(2.0 * f64::from(variance) * turn * turn);
         }
         most
     }
 
-    /// Whether all that leaves depth is convex and farther from all else that does than `reach_m`: then nothing is near of
-    /// anything. How many there are.
+    /// Returns the number of depth-writing instances if all are convex and farther than `reach_m` from each other;
+    /// `None` otherwise.
     pub fn loners(&self, reach_m: f64) -> Option<usize> {
         let solid = |i: usize| {
             let surface = self.survey.surface(&self.scene.instances[i]);
@@ -137,7 +137,7 @@ impl<'a> Visibility<'a> {
     }
 }
 
-/// What is seen, together. Without anything that is lit nothing reflects and all is rough.
+/// Combined properties of visible surfaces. Without lit surfaces, nothing reflects and everything is rough.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surfaces {
     /// Instances that light falls on.

@@ -14,7 +14,7 @@ use crate::stages::{Handles, Slot, StageError};
 use framegraph::Format;
 use framegraph_wgpu::Frame;
 
-/// Depth of what is seen, if it is drawn before it is shaded, and where what moves was.
+/// Declares the depth and motion vectors of visible surfaces, if requested.
 pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -32,7 +32,7 @@ pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Siz
     Ok(())
 }
 
-/// A stage may have handed on ambient occlusion of its own.
+/// Declares ambient occlusion, unless a stage has already provided it.
 pub(super) fn occlusion<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -47,7 +47,7 @@ pub(super) fn occlusion<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?S
     }
 }
 
-/// A stage may have handed on reflections of its own.
+/// Declares reflections, unless a stage has already provided them.
 pub(super) fn reflection<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,

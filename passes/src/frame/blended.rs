@@ -1,4 +1,4 @@
-//! Blended surfaces that need no order: passes of their own, behind those of what transmits.
+//! Order-independent transparency: separate passes after refractive surfaces.
 
 use super::shadows::maps_of;
 use crate::effects::fog::FogSettings;
@@ -15,22 +15,22 @@ use crate::stages::{Handles, Slot, StageError};
 use framegraph::{Target, Texture};
 use framegraph_wgpu::Frame;
 
-/// How blended surfaces are drawn.
+/// Settings of blended surfaces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Blended {
-    /// How they are put in order; those of a sorted technique are drawn elsewhere.
+    /// Technique; sorted ones are drawn by other passes.
     pub transparency: Transparency,
     /// Samples per texel of the color pass.
     pub samples: u8,
-    /// How surfaces are shaded.
+    /// Settings of surface shading.
     pub shading: Shading,
-    /// Fog before them.
+    /// Fog in front of the surfaces.
     pub fog: Option<FogSettings>,
-    /// They lie over a picture that depth of field has blurred, which the next frame does not read.
+    /// True if the surfaces are drawn after depth of field. The next frame does not read that picture.
     pub after_blur: bool,
 }
 
-/// Declares the passes of a technique that needs no order.
+/// Declares the passes of an order-independent technique.
 pub(super) fn blended<W>(frame: &mut Frame<W>, handles: &mut Handles, own: &Blended) -> Result<(), StageError>
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,

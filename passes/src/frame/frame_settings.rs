@@ -1,37 +1,38 @@
-//! The whole frame as data: settings with what goes beside them.
+//! Complete frame as data: [`Settings`] with quality, light search and layers.
 
 use crate::frame::Settings;
 use crate::gpu_scene::punctual::{FroxelSettings, LightSearch};
 use crate::light::shading::Quality;
 
-/// A frame without its scene and camera.
+/// Settings of a frame, without scene and camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct FrameSettings {
-    /// How fine light from all around is made; `settings.shading` says how it is used.
+    /// Quality of image-based light; `settings.shading` controls how it is used.
     pub quality: Quality,
-    /// How shading finds the lights that reach a place.
+    /// Method of finding the lights that reach a point.
     pub lights: LightSearch,
-    /// How far a mesh that has [levels of detail](framegraph_scene::MeshLevel) may be drawn from where it is, in pixels and in texels of
-    /// shadow maps; 0 draws all meshes whole.
+    /// Maximum geometric error of [levels of detail](framegraph_scene::MeshLevel), in pixels and in shadow-map texels.
+    /// 0 draws full meshes.
     pub lod_error_px: f32,
-    /// Layers of the scene that are shown, a bit each ([`ViewSettings::visible_layers`](crate::gpu_scene::view::ViewSettings::visible_layers)).
+    /// Visible layers of the scene as a bit mask
+    /// ([`ViewSettings::visible_layers`](crate::gpu_scene::view::ViewSettings::visible_layers)).
     pub visible_layers: u8,
-    /// Post-processing goes into the color pass's shader where that is sound.
+    /// Inlines post-processing into the shader of the color pass where the result is correct.
     pub inline: bool,
-    /// The frame.
+    /// Settings of the standard frame.
     pub settings: Settings,
 }
 
 impl Default for FrameSettings {
-    /// [`FrameSettings::DEFAULT`].
+    /// Returns [`FrameSettings::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
     }
 }
 
 impl FrameSettings {
-    /// The default settings, in high quality.
+    /// Default settings at high quality.
     pub const DEFAULT: Self = Self {
         quality: Quality::High,
         lights: LightSearch::Auto(FroxelSettings::DEFAULT),

@@ -1,4 +1,4 @@
-//! Stages of what transmits: the picture of what is behind it, and its layers.
+//! Stages of refractive surfaces: the picture behind them, and their layers.
 
 use super::shadows::maps_of;
 use crate::effects::fog::FogSettings;
@@ -13,24 +13,24 @@ use crate::stages::{Handles, Slot, StageError};
 use framegraph::{AccessKind, Texture};
 use framegraph_wgpu::Frame;
 
-/// How what transmits is drawn.
+/// Settings of refractive surfaces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Glass {
-    /// Levels of the picture of what is behind it; 0: nothing transmits.
+    /// Number of levels of the picture behind them; 0 if no surface is refractive.
     pub levels: u8,
-    /// Layers of glass that is seen through glass.
+    /// Number of refractive layers visible through each other.
     pub layers: u8,
     /// Samples per texel of the color pass.
     pub samples: u8,
-    /// How surfaces are shaded.
+    /// Settings of surface shading.
     pub shading: Shading,
-    /// Fog before them.
+    /// Fog in front of the surfaces.
     pub fog: Option<FogSettings>,
-    /// How blended surfaces are put in order.
+    /// Technique for blended surfaces.
     pub transparency: Transparency,
 }
 
-/// The picture of what is behind transmissive surfaces: a pass a level.
+/// Declares the picture behind refractive surfaces, with one pass for each level.
 pub(super) fn scene<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -54,7 +54,7 @@ pub(super) fn scene<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
     Ok(())
 }
 
-/// Layer by layer from the back: the stage before made the picture of what is behind the first of them.
+/// Declares the refractive layers from back to front. The previous stage provides the picture behind the first layer.
 pub(super) fn transparent<W>(frame: &mut Frame<W>, handles: &mut Handles, glass: &Glass) -> Result<(), StageError>
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,

@@ -1,4 +1,4 @@
-//! Stages of what a lens does to the radiance.
+//! Stages of lens effects: depth of field, bloom, lens flare.
 
 use crate::effects::bloom;
 use crate::effects::bloom::{BloomChain, BloomMix, BloomSettings};
@@ -20,7 +20,8 @@ pub(super) fn dof<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
     }
 }
 
-/// A stage may have handed on what glows of its own. Where frames are added up over time, nothing flickers that had to count less.
+/// Declares bloom, unless a stage has already provided it. With TAA, bloom does not weight bright pixels against
+/// flicker.
 pub(super) fn bloom<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -36,7 +37,7 @@ pub(super) fn bloom<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
     }
 }
 
-/// What glows as post-processing takes it.
+/// Returns the bloom as post-processing reads it.
 pub(super) fn mix_of(handles: &Handles, settings: Option<BloomSettings>, size_texels: [u32; 2]) -> Option<BloomMix> {
     let own = settings.filter(BloomSettings::is_seen)?;
     Some(BloomMix {

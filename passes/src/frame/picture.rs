@@ -12,20 +12,20 @@ use framegraph::{Target, Texture};
 use framegraph_shaders::layout::FxaaUniforms;
 use framegraph_wgpu::{Frame, StoreRounding};
 
-/// How post-processing is declared.
+/// Options of declaring post-processing.
 #[derive(Clone, Copy)]
 pub(super) struct PostWay {
-    /// An edge filter follows.
+    /// True if an edge filter follows.
     pub fxaa: bool,
     /// See [`Post::stored`].
     pub stored: Option<StoreRounding>,
-    /// A pass an effect.
+    /// Declares a pass for each effect.
     pub split: bool,
-    /// The picture is made larger afterwards.
+    /// Upscaling after post-processing.
     pub upscale: Option<Upscale>,
 }
 
-/// The point-wise effects, in one pass or one pass each.
+/// Declares the point-wise effects, in one pass or in one pass each.
 pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -51,7 +51,7 @@ pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables>
     Ok(())
 }
 
-/// Softens edges.
+/// Declares FXAA.
 pub(super) fn fxaa<W: AsRef<Programs> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,

@@ -1,7 +1,7 @@
-//! Standard passes by name, for frames that files describe: what they declare, without their recorders.
+//! Standard passes by name, for graph files. Plugins declare the passes, without recorders.
 //!
-//! A file says `Plugin(kind: "fxaa", name: "fxaa", slots: {"input": "ldr", "output": "screen"})`. The program `plan` reads
-//! such files.
+//! In a file: `Plugin(kind: "fxaa", name: "fxaa", slots: {"input": "ldr", "output": "screen"})`. The program `plan`
+//! reads graph files.
 
 use crate::effects::color::Color;
 use crate::effects::depth::prepass::Prepass;
@@ -14,10 +14,10 @@ use crate::gpu_scene::view::ViewId;
 use framegraph::file::{Call, Host, Plugin, PluginError, PluginSlot, Registry, SlotType};
 use framegraph::{Pass, Texture};
 
-/// How one kind declares its pass.
+/// Declares the pass of a kind.
 type Declare<H> = fn(&mut H, &mut Call<'_>) -> Result<(), PluginError>;
 
-/// One kind: its slots, and what it declares.
+/// Kind of pass: its slots and its declaration.
 struct Standard<H: ?Sized> {
     slots: &'static [PluginSlot],
     declare: Declare<H>,
@@ -95,12 +95,12 @@ pub fn registry<'p, H: Host + ?Sized + 'p>() -> Registry<'p, H> {
     registry
 }
 
-/// The only parameter of a kind, or what it is when the file leaves it out.
+/// Returns the only parameter of a kind, or `otherwise` if the file omits it.
 fn params<T: serde::de::DeserializeOwned>(call: &Call<'_>, otherwise: T) -> Result<T, PluginError> {
     if call.has_params() { Ok(call.params()?) } else { Ok(otherwise) }
 }
 
-/// What a required slot is bound to. An earlier image of a history is no input of these passes.
+/// Returns the texture bound to a required slot. These passes do not read earlier images of a history.
 fn input(call: &Call<'_>, slot: PluginSlot) -> Result<Texture, PluginError> {
     call.current(slot.name).ok_or_else(|| PluginError::Custom {
         message: format!("its slot `{}` takes no image of an earlier frame", slot.name),
@@ -108,7 +108,7 @@ fn input(call: &Call<'_>, slot: PluginSlot) -> Result<Texture, PluginError> {
     })
 }
 
-/// Declares the pass and hands its output over.
+/// Declares the pass and provides its output.
 fn made<H: Host + ?Sized, P: Pass>(
     host: &mut H,
     call: &mut Call<'_>,

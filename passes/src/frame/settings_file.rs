@@ -1,4 +1,4 @@
-//! Settings as files: RON text with a version. `docs/reference/settings.md` is the written schema.
+//! Settings files: RON text with a version. `docs/reference/settings.md` documents the schema.
 
 mod lens;
 
@@ -9,38 +9,38 @@ use framegraph::Format;
 use framegraph::file::{FileErrors, document, to_document};
 use std::fmt::Debug;
 
-/// The version of the format that is read and written.
+/// Version of the format that is read and written.
 pub const SETTINGS_VERSION: u32 = 1;
 
-/// A settings file is refused.
+/// Error of reading a settings file.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
-    /// It is no RON, of another version, or has fields and values that there are not.
+    /// Invalid RON, an unsupported version, or an unknown field or value.
     #[error(transparent)]
     File(#[from] FileErrors),
-    /// A value is out of its range.
+    /// A value is out of range.
     #[error("{path}: {field} is {value}; {takes} is needed")]
     Range {
-        /// What the file is called.
+        /// Name of the file.
         path: String,
-        /// The field, from the frame on.
+        /// Path of the field within the frame settings.
         field: &'static str,
-        /// Its value.
+        /// Rejected value.
         value: String,
-        /// What the field takes.
+        /// Allowed range.
         takes: String,
     },
 }
 
 impl Debug for SettingsError {
-    /// The sentence, since that is what an `unwrap` shows.
+    /// Prints the message, as `unwrap` shows it.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
     }
 }
 
-/// The file itself.
+/// Contents of a settings file.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SettingsForm {
@@ -50,25 +50,25 @@ struct SettingsForm {
 }
 
 impl FrameSettings {
-    /// Reads settings from `text`; `path` is what errors call it. Fields that are left out are those of the default.
+    /// Reads settings from `text`. Errors name the file `path`. Omitted fields have their default.
     ///
     /// # Errors
-    /// [`SettingsError`].
+    /// Fails as [`SettingsError`] describes.
     pub fn from_ron(path: &str, text: &str) -> Result<Self, SettingsError> {
         let form: SettingsForm = document(path, text, SETTINGS_VERSION)?;
         form.frame.check(path)?;
         Ok(form.frame)
     }
 
-    /// The settings as a file, complete.
+    /// Returns the settings as a complete file.
     ///
     /// # Errors
-    /// What RON cannot hold: no settings that there are.
+    /// Fails if RON cannot represent a value, which no valid settings have.
     pub fn to_ron(&self) -> Result<String, String> {
         to_document(&SettingsForm { version: SETTINGS_VERSION, frame: *self })
     }
 
-    /// Whether every number is in its range.
+    /// Checks the range of every number.
     fn check(&self, path: &str) -> Result<(), SettingsError> {
         let refuse =
             |field, value: String, takes: String| Err(SettingsError::Range { path: path.into(), field, value, takes });
@@ -101,7 +101,7 @@ impl FrameSettings {
         Ok(())
     }
 
-    /// The numbers that have a range: field, value, least and greatest.
+    /// Returns the numbers that have a range: field, value, minimum and maximum.
     pub fn ranges(&self) -> Vec<(&'static str, f64, f64, f64)> {
         let s = &self.settings;
         let mut all = vec![

@@ -10,7 +10,7 @@ use crate::stages::{Handles, Slot, StageError};
 use framegraph::Texture;
 use framegraph_wgpu::Frame;
 
-/// Shadow maps, unless they were handed on; and the structure, of that size and so many levels, for contact shadows.
+/// Declares shadow maps, unless a stage has already provided them, and the structure if contact shadows are on.
 pub(super) fn shadow<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
@@ -21,14 +21,14 @@ pub(super) fn shadow<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Size
     if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
         handles.set(maps_slot(&shadows), maps);
     }
-    // Before the prepass, so that nothing comes between that and the color pass.
+    // Declared before the prepass, so that no pass separates prepass and color pass.
     if shadows.contact.is_some() {
         structure(frame, handles, resolution, levels)?;
     }
     Ok(())
 }
 
-/// The shadow maps, depth or moments.
+/// Returns the shadow maps: depth, or moments.
 pub(super) fn maps_of(handles: &Handles) -> Option<Texture> {
     handles.find(Slot::SHADOW_MAP).or_else(|| handles.find(Slot::SHADOW_MOMENTS))
 }

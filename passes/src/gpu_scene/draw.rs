@@ -1,7 +1,7 @@
-//! Drawing batches of instances: one pipeline for each kind of surface, one bind group for each material, one draw for each
-//! batch, or one indirect call for many ([`indirect`](crate::gpu_scene::indirect)).
+//! Drawing batches of instances: one pipeline for each kind of surface, and one bind group for each material. Each
+//! batch is one draw, or many batches are one indirect call ([`indirect`](crate::gpu_scene::indirect)).
 //!
-//! A surface is of the kind of its lobes: each set of lobes has a shader of its own, which binds and computes nothing else.
+//! The lobes of a material select the shader. A shader binds and computes only the lobes that it has.
 
 use crate::error::PassError;
 use crate::gpu_scene::indirect::{ARGUMENTS_BYTES, DrawList, LEAST_RUN, draws_indirectly};
@@ -17,23 +17,24 @@ use framegraph_wgpu::{Binding, Constants, Cx, Depth, Output, Raster, RasterPipel
 use std::sync::Arc;
 use wgpu::{Buffer, Face, FrontFace, PrimitiveState, PrimitiveTopology};
 
-/// Which variant of a shader draws a surface.
+/// Shader variant that draws a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfaceVariant {
-    /// The lobes of its material.
+    /// Lobes of the material.
     pub lobes: Lobes,
-    /// Bits of its material ([`material_traits`](crate::gpu_scene::upload::material_traits)), and the one of meshes without area.
+    /// Traits of the material ([`material_traits`](crate::gpu_scene::upload::material_traits)), and the bit of meshes
+    /// without area.
     pub traits: u32,
-    /// Its mesh has colors.
+    /// True if the mesh has vertex colors.
     pub colored: bool,
-    /// Its material is taken from an array, where the shader can ([`Feature::MATERIAL_TABLE`]).
+    /// True if the material is read from an array, if the shader supports that ([`Feature::MATERIAL_TABLE`]).
     pub material_table: bool,
-    /// Instances bring their objects along ([`Instances::Stream`]).
+    /// True if the instance stream contains the objects ([`Instances::Stream`]).
     pub instance_stream: bool,
 }
 
 impl SurfaceVariant {
-    /// The features of how vertices come to a shader.
+    /// Returns the features of vertex input.
     #[must_use]
     pub fn vertex_features(self) -> Features {
         Features::NONE
@@ -43,67 +44,67 @@ impl SurfaceVariant {
     }
 }
 
-/// Finds the program for a variant.
+/// Returns the program of a variant.
 pub type ProgramOf<'a> = dyn Fn(SurfaceVariant) -> Result<Arc<Program>, PassError> + 'a;
 
-/// What instances are drawn from: the scene, and where a view has placed them.
+/// Scene and view that instances are drawn from.
 #[derive(Clone, Copy, Debug)]
 pub struct InstanceSource<'a> {
     /// Meshes, materials and textures.
     pub scene: &'a GpuScene,
-    /// Where instances are, and what draws take of them.
+    /// Transforms of instances, and the instance stream.
     pub instances: Instances<'a>,
-    /// Arguments of long lists of draws.
+    /// Arguments of indirect draws.
     pub arguments: &'a Buffer,
-    /// Materials test and write stencil, which the pass then has.
+    /// True if materials test and write stencil, which the pass then has.
     pub stencil: bool,
 }
 
 impl InstanceSource<'_> {
-    /// The same with the stencil states of materials, where the pass draws into depth with stencil.
+    /// Sets whether the stencil states of materials apply. The depth attachment must have stencil.
     #[must_use]
     pub const fn with_stencil(self, stencil: bool) -> Self {
         Self { stencil, ..self }
     }
 }
 
-/// How batches of instances are drawn.
+/// State shared by the draws of a pass over surfaces.
 pub struct SurfaceDraw<'a> {
-    /// Shader and entry points, by variant.
+    /// Program of each variant.
     pub program: &'a ProgramOf<'a>,
-    /// What the pass binds in group 0, in the order of its interface.
+    /// Bindings of group 0, in the order of the pass's interface.
     pub frame: &'a [Option<Binding>],
-    /// Values of the constants of the pass's interface behind the first ones, [`Self::TRAITS`] and [`Self::OBJECT_LIGHT`];
-    /// those that a shader lacks are left out. A pass without any shades nothing.
+    /// Values of the interface's constants after [`Self::TRAITS`] and [`Self::OBJECT_LIGHT`]. Constants that a shader
+    /// lacks are omitted. A pass without constants does not shade.
     pub constants: &'a [f64],
     /// Depth test.
     pub depth: Depth,
-    /// Blending by color slot.
+    /// Blend state of each color slot.
     pub colors: &'a [Output],
 }
 
-/// Which faces of triangles are drawn.
+/// Faces of triangles to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Faces {
-    /// Front faces, and back faces where the material is double-sided.
+    /// Front faces, and also back faces if the material is double-sided.
     OfMaterial,
-    /// Back faces alone.
+    /// Back faces only.
     Back,
-    /// Front faces alone.
+    /// Front faces only.
     Front,
 }
 
-/// How depth alone is drawn.
+/// State of a depth-only draw.
 pub struct DepthDraw<'a> {
-    /// Entry points `vs_opaque`, and `vs_mask` with `fs_mask`.
+    /// Shader with the entry points `vs_opaque`, `vs_mask` and `fs_mask`.
     pub shader: &'static Module<'static>,
-    /// What the pass provides to it.
+    /// Interface of the pass.
     pub interface: &'static Interface,
-    /// What the pass binds in group 0, in the order of its interface.
+    /// Bindings of group 0, in the order of the pass's interface.
     pub frame: &'a [Option<Binding>],
     /// Depth test.
     pub depth: Depth,
-    /// Opaque instances and masked ones, nearest first, so that depth rejects what is behind.
+    /// Opaque and masked instances, nearest first, so that depth rejects hidden ones.
     pub batches: &'a [DrawList; 2],
 }
 
@@ -111,7 +112,7 @@ impl DepthDraw<'_> {
     /// Draws the depth of opaque and masked instances.
     ///
     /// # Errors
-    /// What the shader or the device refuses.
+    /// Fails if the shader is invalid or the device fails.
     pub fn draw(&self, from: InstanceSource<'_>, programs: &Programs, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let Self { shader, interface, frame, depth, batches } = self;
         let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(shader, interface) };
@@ -126,20 +127,20 @@ impl DepthDraw<'_> {
     }
 }
 
-/// What a pipeline depends on beside the pass.
+/// Pipeline state other than the pass.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct PipelineKey {
     surface: SurfaceVariant,
     mirrored: bool,
     topology: Topology,
-    /// What light instances take ([`InstanceDraw::light_bits`]); 0 where nothing is shaded.
+    /// Light channels of the instance ([`InstanceDraw::light_bits`]); 0 if nothing is shaded.
     light_bits: u16,
-    /// The material, if its stencil state counts.
+    /// Material, if its stencil state applies.
     stencil: Option<MaterialId>,
 }
 
 impl PipelineKey {
-    /// That of an instance, `indirect` where many are drawn by one call, in a pass that `shades` or draws depth alone.
+    /// Returns the key of an instance. `indirect` is true for indirect draws, `shades` for passes that shade.
     fn of(instance: &InstanceDraw, (indirect, shades): (bool, bool), from: InstanceSource<'_>) -> Self {
         let InstanceDraw { mesh, material, mirrored, light_bits } = *instance;
         let scene = from.scene;
@@ -157,27 +158,27 @@ impl PipelineKey {
     }
 }
 
-/// A pipeline with the bind groups that all its draws share.
+/// Pipeline with the bind groups that all its draws share.
 struct SharedState {
     key: PipelineKey,
     program: Arc<Program>,
     pipeline: RasterPipeline,
     frame: wgpu::BindGroup,
-    /// Group 2, where objects are read from buffers.
+    /// Group 2, if objects are read from buffers.
     objects: Option<wgpu::BindGroup>,
     materials: Materials,
-    /// By the number of [`Materials::group`], those that a draw asked for.
+    /// Bind groups of materials by [`Materials::group`]; `None` if not requested yet.
     groups: Vec<Option<wgpu::BindGroup>>,
 }
 
-/// How a program reads materials.
+/// Method of reading materials in a program.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Materials {
-    /// Not at all.
+    /// Reads no materials.
     None,
-    /// From a bind group of their own.
+    /// Binds a group for each material.
     Bound,
-    /// From an array.
+    /// Reads an array of materials.
     Table,
 }
 
@@ -189,7 +190,7 @@ impl Materials {
         if program.has_group(1) { Self::Bound } else { Self::None }
     }
 
-    /// A number that materials share which are bound by one group.
+    /// Returns the index of the bind group, which materials may share.
     fn group(self, material: MaterialId) -> usize {
         match self {
             Self::None | Self::Table => 0,
@@ -199,7 +200,7 @@ impl Materials {
 }
 
 impl SharedState {
-    /// The bind group of that number, made for a material of it; none where the program reads nothing of one.
+    /// Returns the bind group of a material; `None` if the program reads no materials.
     fn material(
         &mut self,
         group: usize,
@@ -222,24 +223,24 @@ impl SharedState {
 }
 
 impl SurfaceDraw<'_> {
-    /// The first constant of a pass that draws surfaces: what the material has.
+    /// First constant of passes that draw surfaces: the traits of the material.
     pub const TRAITS: &'static str = "MATERIAL_TRAITS";
-    /// The second constant of a pass that shades surfaces: what light an instance takes.
+    /// Second constant of passes that shade: the light channels of the instance.
     pub const OBJECT_LIGHT: &'static str = "OBJECT_LIGHT";
 
-    /// Draws a list of the scene's instances, in order. What a draw has in common with the one before it is not set again, and
-    /// batches in a row that differ in their arguments alone are one call.
+    /// Draws a list of instances in order. State equal to the previous draw's is not set again. Consecutive batches
+    /// that differ only in their arguments are one indirect call.
     ///
     /// # Errors
-    /// What the shader or the device refuses.
+    /// Fails if the shader is invalid or the device fails.
     pub fn draw(&self, list: &DrawList, from: InstanceSource<'_>, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         self.draw_faces(list, Faces::OfMaterial, from, cx)
     }
 
-    /// Draws these faces of a list, as [`SurfaceDraw::draw`] does.
+    /// Draws some faces of a list, as [`SurfaceDraw::draw`] does.
     ///
     /// # Errors
-    /// What the shader or the device refuses.
+    /// Fails if the shader is invalid or the device fails.
     pub fn draw_faces(
         &self,
         list: &DrawList,
@@ -259,9 +260,9 @@ impl SurfaceDraw<'_> {
         let first_arguments = list.first_arguments().filter(|_| draws_indirectly(cx.gpu()));
         let kind = (first_arguments.is_some(), !self.constants.is_empty());
         let mut states: Vec<SharedState> = Vec::new();
-        // Index of the state that is set, and the group of its materials.
+        // Index of the current state, and its current bind group of materials.
         let (mut set, mut bound): (Option<usize>, Option<usize>) = (None, None);
-        // Whether the indices that are set are short.
+        // True if the bound indices have 16 bits.
         let mut indexed: Option<bool> = None;
         let mut at = 0;
         while at < list.len() {
@@ -335,7 +336,7 @@ impl SurfaceDraw<'_> {
         Ok(())
     }
 
-    /// The pipeline of a kind of surface, made for the first `material` that asks for it.
+    /// Returns the pipeline of a kind of surface, created for the first `material` that needs it.
     fn pipeline(
         &self,
         (key, faces): (PipelineKey, Faces),
@@ -390,7 +391,7 @@ impl SurfaceDraw<'_> {
     }
 }
 
-/// Refuses a surface with more textures than the device shades with at once.
+/// Fails if a surface needs more textures than the device binds.
 pub(crate) fn fits(program: &Program, lobes: Lobes, material: &str, limits: &wgpu::Limits) -> Result<(), PassError> {
     let most = [limits.max_sampled_textures_per_shader_stage, limits.max_samplers_per_shader_stage];
     for ((count, most), what) in program.sampled().into_iter().zip(most).zip(["textures", "samplers"]) {

@@ -6,29 +6,29 @@ use crate::gpu_scene::upload::MeshRange;
 use framegraph_scene::levels::level_of;
 use framegraph_scene::{Batch, BatchOrder, DrawLists, Renderables};
 
-/// What is drawn of a view, each list as the draws that make it up: all instances of one mesh and material are one draw where
-/// order does not show. One array holds the numbers of all lists, so that they are uploaded at once.
+/// Draws of a view, as lists of batches. Instances of one mesh and material are one batch if their order has no
+/// effect. A single array holds the instance numbers of all lists, so that one upload suffices.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ViewDraws {
-    /// Numbers of instances; a draw takes a range of them.
+    /// Instance numbers; each batch uses a range of them.
     pub numbers: Vec<u32>,
-    /// Depth of opaque surfaces and of masked ones: what has the nearest instance first.
+    /// Depth of opaque and masked surfaces. The batch with the nearest instance comes first.
     pub depth: [DrawList; 2],
-    /// Opaque surfaces and masked ones over that depth, in the same order: of surfaces that lie in one another the last is seen, so
-    /// order shows.
+    /// Opaque and masked surfaces to shade, in the order of [`depth`](Self::depth). Coplanar surfaces depend on this
+    /// order, since the last one is visible.
     pub surfaces: [DrawList; 2],
-    /// What transmits, a draw each, nearest first.
+    /// Refractive surfaces, one batch each, nearest first.
     pub transmit: Vec<Batch>,
-    /// What blends, farthest first; only neighbors in that order are one draw.
+    /// Blended surfaces, farthest first. Only neighbors in this order share a batch.
     pub blend: DrawList,
     /// Opaque and masked casters of each shadow map.
     pub casters: Vec<[DrawList; 2]>,
-    /// Arguments of the batches of long lists, for draws that take them from a buffer.
+    /// Arguments of indirect draws, for long lists.
     pub arguments: Vec<Arguments>,
 }
 
 impl ViewDraws {
-    /// Those of what is visible and of what casts, in these levels of detail by the numbers of instances.
+    /// Returns the draws of visible instances and casters, with a level of detail for each instance.
     pub(crate) fn new(of: &Renderables, visible: &DrawLists, levels: &[u8], shadows: Option<&ViewShadows>) -> Self {
         let DrawLists { opaque, mask, transmit, blend, .. } = visible;
         let mut numbers = Vec::with_capacity(2 * (opaque.len() + mask.len()) + transmit.len() + blend.len());
@@ -55,7 +55,7 @@ impl ViewDraws {
         Self { depth, surfaces: shaded, transmit, blend: blended, casters, numbers, arguments: Vec::new() }
     }
 
-    /// The same with arguments for long lists. `mesh` is that of an instance in a level.
+    /// Adds arguments for long lists. `mesh` returns the range of an instance in a level.
     pub(crate) fn indirect(mut self, mesh: impl Fn(u32, u8) -> MeshRange) -> Self {
         let Self { depth, surfaces, blend, casters, arguments, .. } = &mut self;
         for list in depth.iter_mut().chain(surfaces).chain([blend]).chain(casters.iter_mut().flatten()) {
@@ -64,7 +64,7 @@ impl ViewDraws {
         self
     }
 
-    /// The same with a call for each instance: the picture that instanced and indirect draws are compared with.
+    /// Returns draws with one call per instance, as a reference for instanced and indirect draws.
     #[must_use]
     pub fn one_by_one(self) -> Self {
         let Self { numbers, depth, surfaces, transmit, blend, casters, .. } = self;
@@ -87,7 +87,7 @@ impl ViewDraws {
         }
     }
 
-    /// Of some of these draws those parts whose instances are wanted.
+    /// Returns the parts of `batches` whose instances are `wanted`.
     pub(crate) fn only(&self, batches: &[Batch], wanted: impl Fn(u32) -> bool) -> DrawList {
         let mut parts: Vec<Batch> = Vec::new();
         for batch in batches {
@@ -102,7 +102,7 @@ impl ViewDraws {
         parts.into()
     }
 
-    /// How many draws these are.
+    /// Returns the number of draws.
     #[must_use]
     pub fn count(&self) -> usize {
         let lists = self.depth.iter().chain(&self.surfaces).chain(self.casters.iter().flatten());

@@ -1,8 +1,10 @@
-//! Lists of draws, and the arguments of those that are drawn indirectly: one call draws a run of batches.
+//! Draw lists, and the arguments of indirect draws: one call draws many consecutive batches.
 //!
-//! What a call takes the CPU in wgpu is half a microsecond, whatever it draws. Indirectly a batch costs the twenty bytes of its
-//! arguments, so long lists of small batches are drawn so. Materials without textures then come from an array, since a bind group for
-//! each would end every run. Those with textures are bound: fragments that a triangle does not cover take part in choosing mip levels,
+//! A draw call costs about half a microsecond of CPU time in wgpu. An indirect batch costs only the 20 bytes of its
+//! arguments, so long lists are drawn indirectly. Materials without textures are then read from an array, since a bind
+//! group per material would end each run.
+//!
+//! Materials with textures still use bind groups. Helper invocations outside a triangle take part in mip selection,
 //! and some drivers (Mesa's llvmpipe) load nothing from buffers for them.
 
 use crate::gpu_scene::upload::MeshRange;
@@ -10,35 +12,36 @@ use framegraph_scene::Batch;
 use framegraph_wgpu::Gpu;
 use wgpu::{Features, Limits};
 
-/// Batches of which a list has arguments: fewer take less time than their arguments and the variant of the shader would.
+/// Minimum number of batches of an indirect list. Shorter lists are faster with direct draws.
 pub const LEAST_BATCHES: usize = 512;
-/// Batches in a row that are worth a call of their own.
+/// Minimum number of consecutive batches for one indirect call.
 pub const LEAST_RUN: usize = 4;
 
-/// The arguments of an indexed indirect draw: indices, instances, first index, base vertex, first instance (wgpu's
-/// `DrawIndexedIndirectArgs`).
+/// Arguments of an indexed indirect draw: index count, instance count, first index, base vertex, first instance
+/// (wgpu's `DrawIndexedIndirectArgs`).
 pub type Arguments = [u32; 5];
 
-/// Bytes of one.
+/// Size of [`Arguments`] in bytes.
 pub const ARGUMENTS_BYTES: u64 = size_of::<Arguments>() as u64;
 
-/// Batches that are drawn in this order.
+/// Batches in draw order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawList {
     batches: Vec<Batch>,
-    /// Where the arguments of its batches begin among the view's; none where they have none.
+    /// Index of the first batch's arguments in the view's array, if the list has arguments.
     first_arguments: Option<u32>,
 }
 
 impl DrawList {
-    /// Where the arguments of its batches begin among the view's, one after another; none where it is too short to have any.
+    /// Returns the index of the first batch's arguments in the view's array. The others follow. `None` for short
+    /// lists.
     #[must_use]
     pub fn first_arguments(&self) -> Option<u32> {
         self.first_arguments
     }
 
-    /// Appends the arguments of its batches to `arguments`, where it is long enough. `mesh` is that of an instance in a
-    /// level.
+    /// Appends the arguments of the batches to `arguments` if the list is long enough. `mesh` returns the range of an
+    /// instance in a level.
     pub(crate) fn argue(&mut self, mesh: impl Fn(u32, u8) -> MeshRange, arguments: &mut Vec<Arguments>) {
         if self.batches.len() >= LEAST_BATCHES {
             self.first_arguments = Some(arguments.len() as u32);
@@ -71,18 +74,18 @@ impl<'a> IntoIterator for &'a DrawList {
 }
 
 fn of_batch(batch: Batch, mesh: MeshRange) -> Arguments {
-    // Base vertices are two's complements.
+    // Base vertices are in two's complement.
     [mesh.index_count, batch.count, mesh.first_index, mesh.base_vertex as u32, batch.first]
 }
 
-/// Whether the device draws batches indirectly: they begin at instances of their own.
+/// Returns true if the device supports indirect draws with a first instance.
 #[must_use]
 pub fn draws_indirectly(gpu: &Gpu) -> bool {
     gpu.device.features().contains(Features::INDIRECT_FIRST_INSTANCE)
 }
 
-/// Whether the device binds an array of materials beside all else that shading binds: eight storage buffers a stage, as WebGPU
-/// asks of every device.
+/// Returns true if the device can bind the material array in addition to the other bindings of shading. This needs
+/// eight storage buffers per stage, the WebGPU default.
 #[must_use]
 pub fn binds_materials(limits: &Limits) -> bool {
     limits.max_storage_buffers_per_shader_stage >= 8

@@ -1,4 +1,4 @@
-//! Image-based light on the device: the panorama as a background, its irradiance and prefiltered radiance, and the table of
+//! Image-based light on the device: the panorama as a background, irradiance, prefiltered radiance, and the table of
 //! directional albedo.
 
 use crate::gpu_scene::upload::GpuEnvironment;
@@ -10,19 +10,19 @@ mod make;
 #[cfg(feature = "ibl")]
 pub use make::LightingError;
 
-/// An environment as a background and as light. Made once, kept from frame to frame.
+/// Environment as background and light. Kept across frames.
 #[derive(Debug)]
 pub struct Lighting {
-    /// The map itself, which the sky shows.
+    /// Panorama that the background shows.
     pub panorama: GpuEnvironment,
-    /// Irradiance, the prefiltered cube, and the sun if it is apart.
+    /// Irradiance, prefiltered cube, and the sun if it is separate.
     pub image: ImageLight,
     /// Directional albedo of the lobes, for one visibility term.
     pub dfg: DfgTable,
 }
 
 impl Lighting {
-    /// What was clamped in the map and what went wrong with the cache, a line each; the light is right all the same.
+    /// Returns one line for each clamped value and each cache error. The light is valid in spite of them.
     pub fn warnings(&self) -> impl Iterator<Item = &str> {
         self.image.warnings.iter().chain(&self.dfg.warnings).map(String::as_str)
     }

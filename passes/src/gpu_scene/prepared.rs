@@ -1,4 +1,4 @@
-//! What of a scene's instances stays from view to view: made once, updated where something moves.
+//! View-independent data of a scene's instances: created once, and updated for instances that move.
 
 use crate::gpu_scene::upload::MeshRange;
 use crate::gpu_scene::upload::mesh_range::MeshRanges;
@@ -10,9 +10,9 @@ use glam::DMat4;
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-/// Instances whose placement is uploaded together: a hundred kilobytes.
+/// Number of instances whose transforms are uploaded together, about 100 kB.
 pub(crate) const CHUNK: usize = 1024;
-/// Instances for which another thread is worth waking: their view takes some 50 µs.
+/// Minimum number of instances for which a second thread is used; their view takes about 50 µs.
 const WORTH_A_THREAD: usize = 4096;
 
 /// A scene's instances as views take them.
@@ -40,18 +40,18 @@ const WORTH_A_THREAD: usize = 4096;
 #[derive(Clone, Debug, Default)]
 pub struct PreparedScene {
     renderables: Renderables,
-    /// Those that a view shows which hides some, with its visible layers: of the first such view.
+    /// Instances of the first view that hides some, with its visible layers.
     shown: OnceLock<(u8, Renderables)>,
     placements: Placements,
-    /// The mesh of each instance, and where meshes lie.
+    /// Mesh of each instance, and the buffer ranges of meshes.
     meshes: Vec<MeshId>,
     ranges: MeshRanges,
-    /// Threads on which views are made, beside the caller's.
+    /// Additional threads for making views.
     pub workers: Option<Workers>,
 }
 
 impl PreparedScene {
-    /// That of `scene`, of which one thread makes views.
+    /// Prepares `scene` for views made on a single thread.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         Self {
@@ -64,11 +64,11 @@ impl PreparedScene {
         }
     }
 
-    /// Takes over where the instances `moved` stand. Number, meshes and materials of instances are what they were; a scene of
-    /// which they are not is prepared anew.
+    /// Updates the transforms of the instances `moved`. The number, meshes and materials of instances must not have
+    /// changed; otherwise prepare the scene again.
     ///
     /// # Panics
-    /// When there is no such instance.
+    /// Panics if an instance does not exist.
     pub fn update(&mut self, scene: &Scene, moved: &[usize]) {
         self.renderables.update(scene, moved);
         self.shown = OnceLock::new();
@@ -79,17 +79,17 @@ impl PreparedScene {
         }
     }
 
-    /// Where the mesh of an instance lies in the scene's buffers in a level of detail.
+    /// Returns the buffer range of an instance's mesh in a level of detail.
     pub(crate) fn mesh(&self, instance: u32, level: u8) -> MeshRange {
         self.ranges.of(self.meshes[instance as usize], level)
     }
 
-    /// The threads beside the caller's.
+    /// Returns the additional threads.
     pub(crate) fn pool(&self) -> Option<&rayon::ThreadPool> {
         self.workers.as_ref().and_then(Workers::pool)
     }
 
-    /// What `here` and `there` return, of which the second runs on another thread where there is one and the scene is large.
+    /// Returns the results of both functions. `there` runs on another thread if one exists and the scene is large.
     pub(crate) fn both<A, B: Send>(&self, here: impl FnOnce() -> A, there: impl FnOnce() -> B + Send) -> (A, B) {
         match self.pool().filter(|_| self.placements.count() >= WORTH_A_THREAD) {
             Some(pool) => {
@@ -98,21 +98,21 @@ impl PreparedScene {
                     scope.spawn(|_| other = Some(there()));
                     here()
                 });
-                // The scope ends when both have.
+                // The scope ends when both are done.
                 (own, other.unwrap_or_else(|| unreachable!("a scope waits for what it spawned")))
             }
             None => (here(), there()),
         }
     }
 
-    /// What culling and sorting read.
+    /// Returns the data for culling and sorting.
     #[must_use]
     pub fn renderables(&self) -> &Renderables {
         &self.renderables
     }
 
-    /// Returns what culling and sorting read in a view of these visible layers ([`Renderables::shown`]). What the first view
-    /// with hidden instances reads is kept until something moves.
+    /// Returns the data for culling and sorting in a view of these visible layers ([`Renderables::shown`]). The data
+    /// of the first view with hidden instances is kept until an instance moves.
     #[must_use]
     pub fn shown(&self, visible_layers: u8) -> Cow<'_, Renderables> {
         match self.shown.get() {
@@ -128,22 +128,22 @@ impl PreparedScene {
         }
     }
 
-    /// What shaders read of instances, whatever the eye.
+    /// Returns the view-independent data of instances for shaders.
     #[must_use]
     pub fn placements(&self) -> &Placements {
         &self.placements
     }
 }
 
-/// Some instances that follow each other.
+/// Consecutive instances.
 #[derive(Clone, Debug, Default)]
 struct Piece {
     objects: Vec<ObjectUniforms>,
     world_from_model: Vec<DMat4>,
 }
 
-/// The part of instances' placement that does not depend on the eye, in pieces that are shared until they change. A buffer that was filled
-/// with a piece need not be filled with the same again.
+/// View-independent transforms of instances, in pieces that are shared until they change. A buffer filled with an
+/// unchanged piece needs no upload.
 #[derive(Clone, Debug, Default)]
 pub struct Placements(Vec<Arc<Piece>>);
 
@@ -156,30 +156,30 @@ impl Placements {
         Self(scene.instances.chunks(CHUNK).map(chunk).collect())
     }
 
-    /// How many instances there are.
+    /// Returns the number of instances.
     #[must_use]
     pub fn count(&self) -> usize {
         self.0.iter().map(|chunk| chunk.objects.len()).sum()
     }
 
-    /// What shaders read of an instance.
+    /// Returns the shader data of an instance.
     pub(crate) fn object(&self, instance: usize) -> &ObjectUniforms {
         &self.0[instance / CHUNK].objects[instance % CHUNK]
     }
 
-    /// Model to world space of an instance.
+    /// Returns the model-to-world matrix of an instance.
     pub(crate) fn of(&self, instance: usize) -> Option<&DMat4> {
         self.0.get(instance / CHUNK)?.world_from_model.get(instance % CHUNK)
     }
 
-    /// The pieces that are others than those of `before`, each with the number of its first instance.
+    /// Returns the pieces that differ from `before`, each with the index of its first instance.
     pub(crate) fn changed_since<'a>(&'a self, before: &'a Self) -> impl Iterator<Item = (usize, &'a [ObjectUniforms])> {
         let same = |number: usize, own| before.0.get(number).is_some_and(|other| Arc::ptr_eq(own, other));
         let others = self.0.iter().enumerate().filter(move |(number, own)| !same(*number, own));
         others.map(|(number, own)| (number * CHUNK, own.objects.as_slice()))
     }
 
-    /// The instances that are elsewhere than in `before`: number, model to world space now and then.
+    /// Returns the instances that moved since `before`: index, current and previous model-to-world matrix.
     pub(crate) fn moved_since<'a>(&'a self, before: &'a Self) -> impl Iterator<Item = (usize, &'a DMat4, &'a DMat4)> {
         let pieces = self.0.iter().zip(&before.0).enumerate().filter(|(_, (own, other))| !Arc::ptr_eq(own, other));
         let pairs = pieces.flat_map(|(piece, (own, other))| {
@@ -196,7 +196,7 @@ mod tests {
     use framegraph_scene::{Aabb, Instance, MaterialId, MeshId};
     use glam::{DMat4, DVec3};
 
-    /// Only the piece with what moved is another, and a copy made before keeps its own.
+    /// An update replaces only the piece of the moved instance, and an earlier copy keeps its own.
     #[test]
     fn pieces_are_shared_until_they_change() {
         let mut scene = Scene { materials: vec![framegraph_scene::Material::default()], ..Scene::default() };

@@ -1,39 +1,40 @@
-//! From where a picture was seen, for passes that read that of the frame before.
+//! Camera of the previous frame, for passes that read its picture.
 
 use framegraph_shaders::layout::Projection;
 use glam::{DMat4, DVec3, Mat4};
 
-/// From where a picture was seen, and how it was exposed.
+/// Camera and exposure of a rendered picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreviousView {
-    /// Where the eye was, in m, world space.
+    /// Position of the eye in m, world space.
     pub eye: DVec3,
-    /// World, relative to the eye, to clip space, as the picture was drawn.
+    /// Clip space from world space relative to the eye, with jitter.
     pub clip_from_world: DMat4,
-    /// The same as if pixels were seen through their middles ([`CameraView::jitter`](crate::CameraView::jitter)).
+    /// Clip space from world space relative to the eye, without jitter
+    /// ([`CameraView::jitter`](crate::CameraView::jitter)).
     pub steady_clip_from_world: DMat4,
-    /// View to world space: a rotation.
+    /// World space from view space: a rotation.
     pub world_from_view: DMat4,
-    /// 1 / (1.2 · 2^EV100), in 1/nits.
+    /// Exposure: 1 / (1.2 · 2^EV100), in 1/nits.
     pub exposure: f32,
 }
 
 impl PreviousView {
-    /// The projection.
+    /// Returns the projection.
     pub fn projection(&self) -> Projection {
         Projection::new(&(self.clip_from_world * self.world_from_view))
     }
 
-    /// From view space here to clip space of the frame before, and this exposure over that one's. Without an earlier stand it
-    /// was this one.
+    /// Returns the previous clip space from this view space, and the ratio of this exposure to the previous one.
+    /// `None` stands for an unchanged view.
     pub fn to_earlier(&self, earlier: Option<Self>) -> (Mat4, f32) {
         let Self { eye, clip_from_world, exposure, .. } = earlier.unwrap_or(*self);
-        // Eyes are subtracted in f64: both may be far from the origin.
+        // Eyes are subtracted in f64, since both may be far from the origin.
         let moved = DMat4::from_translation(self.eye - eye);
         ((clip_from_world * moved * self.world_from_view).as_mat4(), self.exposure / exposure)
     }
 
-    /// From clip space here to clip space of the frame before, both as if pixels were seen through their middles.
+    /// Returns the previous clip space from this clip space, both without jitter.
     pub fn steady_clip_to_earlier(&self, earlier: Option<Self>) -> Mat4 {
         let Self { eye, steady_clip_from_world, .. } = earlier.unwrap_or(*self);
         let moved = DMat4::from_translation(self.eye - eye);
@@ -48,8 +49,8 @@ mod tests {
     use framegraph_scene::Camera;
     use glam::DVec4;
 
-    /// A place that both see has the clip position that the earlier camera gave it, a thousand kilometers from the origin
-    /// too; with no earlier view it is this camera's own.
+    /// A point visible to both cameras gets the clip position of the previous one, even 1000 km from the origin.
+    /// Without a previous view, it gets the current one.
     #[test]
     fn places_are_found_where_the_earlier_camera_saw_them() -> Result<(), Box<dyn std::error::Error>> {
         let projection = framegraph_scene::Projection::perspective(1.0, 0.1);
@@ -82,7 +83,7 @@ mod tests {
             let now = now.after(&before);
             let (matrix, ratio) = now.stand().to_earlier(now.earlier);
             let off = (ndc(&now, matrix) - truth.truncate() / truth.w).length();
-            // Matrices in f32.
+            // Matrices are in f32.
             assert!(off < 1e-5, "{home}: {off}");
             assert!((ratio - 0.5).abs() < 1e-6, "{ratio}");
         }

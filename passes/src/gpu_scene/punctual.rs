@@ -1,16 +1,17 @@
-//! Punctual lights of a view: which of them reach what it shows, and which reach what part of it.
+//! Punctual lights of a view: the lights that reach visible surfaces, and their lists by froxel.
 //!
-//! | file | what |
+//! | file | content |
 //! | --- | --- |
-//! | `settings.rs` | how lights are found, by name |
-//! | `reach.rs` | the volume that a light can light |
-//! | `select.rs` | which lights are dropped, and why |
-//! | `grid.rs` | what a camera sees, cut into froxels |
-//! | `assign.rs` | which froxels a volume touches |
-//! | `lists.rs` | the lists of lights that shaders read, and what became of the lights |
+//! | `settings.rs` | method of finding lights, by name |
+//! | `reach.rs` | volume that a light can reach |
+//! | `select.rs` | dropped lights, and reasons |
+//! | `grid.rs` | froxel grid of a camera |
+//! | `assign.rs` | froxels that a volume touches |
+//! | `lists.rs` | light lists for shaders, and a report |
 //!
-//! All of it is arithmetic on the CPU, done when a view is made. A light that reaches a place is never missed; a list may
-//! hold lights that do not quite reach into its froxel, and they add nothing there. `docs/design/lights.md` has what it takes.
+//! Everything is computed on the CPU when a view is made. Lists are conservative: no light is missing where it shines.
+//! A list may contain lights that only touch the bounds of its froxel, and they contribute nothing there.
+//! `docs/design/lights.md` has the cost.
 
 mod assign;
 mod grid;

@@ -1,4 +1,4 @@
-//! Vertex streams as pipelines take them, and the two forms of the one of instances.
+//! Vertex streams of pipelines, and both forms of the instance stream.
 
 use framegraph_shaders::layout::{
     OBJECT_ATTRIBUTES, ObjectAttributes, STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION,
@@ -7,24 +7,24 @@ use framegraph_shaders::layout::{
 use framegraph_wgpu::VertexBuffer;
 use wgpu::{Buffer, VertexAttribute, VertexStepMode};
 
-/// The stream of instances, of which batches are ranges.
+/// Instance stream; batches are ranges of it.
 #[derive(Clone, Copy, Debug)]
 pub enum Instances<'a> {
-    /// A vertex buffer of `layout::ObjectAttributes`, which shaders need nothing else beside.
+    /// Vertex buffer of `layout::ObjectAttributes`; shaders need no other data of instances.
     Stream(&'a Buffer),
-    /// Numbers of elements of other buffers.
+    /// Instance numbers, which index other buffers.
     Numbers {
-        /// A vertex buffer.
+        /// Vertex buffer of instance numbers.
         numbers: &'a Buffer,
-        /// `layout::ObjectUniforms` of each instance, by its number.
+        /// `layout::ObjectUniforms` by instance number.
         objects: &'a Buffer,
-        /// Where the zero point of each instance's mesh is, relative to the eye, by its number.
+        /// Origin of each instance's mesh relative to the eye, by instance number.
         origins: &'a Buffer,
     },
 }
 
 impl<'a> Instances<'a> {
-    /// The vertex buffer.
+    /// Returns the vertex buffer.
     pub(crate) const fn buffer(self) -> &'a Buffer {
         match self {
             Self::Stream(buffer) | Self::Numbers { numbers: buffer, .. } => buffer,
@@ -32,7 +32,7 @@ impl<'a> Instances<'a> {
     }
 }
 
-/// The attributes of each stream; `streamed` if instances bring their objects along.
+/// Returns the attributes of each stream. `streamed` is true if the instance stream contains the objects.
 pub(crate) fn stream_attributes(streamed: bool) -> [Vec<VertexAttribute>; 4] {
     [STREAM_POSITION, STREAM_ATTRIBUTES, STREAM_INSTANCE, STREAM_EARLIER].map(|stream| {
         let all: &[_] = if streamed && stream == STREAM_INSTANCE { &OBJECT_ATTRIBUTES } else { &VERTEX_ATTRIBUTES };
@@ -46,7 +46,7 @@ pub(crate) fn stream_attributes(streamed: bool) -> [Vec<VertexAttribute>; 4] {
     })
 }
 
-/// The streams with these attributes.
+/// Returns the streams with these attributes.
 pub(crate) fn vertex_buffers(attributes: &[Vec<VertexAttribute>; 4], streamed: bool) -> Vec<VertexBuffer<'_>> {
     let buffer = |(stream, attributes)| VertexBuffer {
         stride_bytes: match stream {

@@ -1,9 +1,8 @@
 //! The scene on the GPU: buffers, textures and samplers, in the layout of `framegraph_shaders::layout`.
 //!
-//! One buffer holds the positions of all meshes, one their other attributes, one their indices, one
-//! the factors of all materials; draws say where in them. Images are uploaded once for each role
-//! they play, with their own mip levels or levels made here, on all cores. Bind groups are the passes' business:
-//! [`GpuScene::material_binding`] says what goes into the material's.
+//! All meshes share a buffer of positions, one of other attributes and one of indices. All materials share a buffer of
+//! factors. Images are uploaded once for each role, with mip levels of the file or computed on all cores. Passes
+//! create the bind groups. [`GpuScene::material_binding`] returns the bindings of a material.
 
 mod bodies;
 mod buffers;

@@ -1,10 +1,10 @@
-//! Views of a scene: camera, exposure, sun and lights as the shaders read them, and what is drawn.
+//! Views of a scene: camera, exposure, sun and lights in the layout of shaders, and draw lists.
 //!
-//! Positions are sent relative to the eye, subtracted in double precision, so that a scene a thousand kilometers from its
-//! origin does not jitter. Lights are multiplied by the exposure here, in f32: what the shaders see fits half floats.
+//! Positions are relative to the eye and subtracted in double precision, so that a scene 1000 km from its origin does
+//! not jitter. Lights are multiplied by the exposure in f32, so that their values fit half floats.
 //!
-//! A frame may have several views ([`Views`]). Each has buffers of its own for what depends on its eye and for what it draws;
-//! meshes, materials and textures are the scene's and shared.
+//! A frame may have several views ([`Views`]). Each view has its own buffers for eye-relative data and draw lists. All
+//! views share the meshes, materials and textures of the scene.
 
 mod blended;
 mod gpu;
@@ -31,10 +31,10 @@ use framegraph_shaders::layout::{FrameUniforms, LightUniforms, MotionUniforms, S
 use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
 
-/// What a view is asked for.
+/// Settings of a view.
 #[derive(Clone, Debug)]
 pub struct ViewSettings {
-    /// Where from, and what of.
+    /// Camera position, direction and projection.
     pub camera: Camera,
     /// Width and height of the picture in pixels.
     pub size_px: [u32; 2],
@@ -42,33 +42,33 @@ pub struct ViewSettings {
     pub ev100: f32,
     /// Factor on the environment's radiance, as light and as a background.
     pub environment_intensity: f32,
-    /// How shadows are made; none for a frame without.
+    /// Settings of shadow maps; `None` disables shadows.
     pub shadows: Option<ShadowSettings>,
-    /// How shading finds the lights that reach a place.
+    /// Method of finding the punctual lights that reach a point.
     pub lights: LightSearch,
-    /// How far a mesh that has [levels of detail](framegraph_scene::MeshLevel) may be drawn from where it is, in pixels and in texels of
-    /// shadow maps; 0 draws all meshes whole.
+    /// Maximum geometric error of [levels of detail](framegraph_scene::MeshLevel), in pixels and in shadow-map texels.
+    /// 0 draws full meshes.
     pub lod_error_px: f32,
-    /// Layers that are shown, a bit each ([`DrawOptions::layers`](framegraph_scene::DrawOptions::layers)); 1 by default, as
+    /// Visible layers as a bit mask ([`DrawOptions::layers`](framegraph_scene::DrawOptions::layers)); 1 by default, as
     /// Filament's `View::setVisibleLayers`.
     pub visible_layers: u8,
 }
 
-/// What stands behind everything.
+/// Background of a view.
 #[derive(Clone, Debug)]
 pub enum Background {
-    /// Nothing: black.
+    /// Black.
     None,
     /// The environment map.
     Environment,
     /// A clear sky with the sun's disc.
     ClearSky(Preetham),
-    /// The same radiance in every direction, in nits, linear Rec.709; it lights nothing.
+    /// Uniform radiance in nits, linear Rec.709. It does not light the scene.
     Constant(Vec3),
 }
 
 impl Background {
-    /// A clear sky, to be seen. Its ground is lit by the sun that belongs to it.
+    /// Returns a clear sky as a background. Its sun lights the ground below the horizon.
     pub fn clear_sky(sky: &Sky) -> Self {
         let sun_lux = sun_light(sky.toward_sun, sky.turbidity)
             .map_or(DVec3::ZERO, |sun| sun.color.as_dvec3() * f64::from(illuminance_lux(&sun)));
@@ -76,16 +76,16 @@ impl Background {
     }
 }
 
-/// A [`Background`] as the sky's shader reads it, multiplied by the exposure.
+/// [`Background`] in the layout of the sky shader, multiplied by the exposure.
 #[derive(Clone, Copy, Debug)]
 pub enum BackgroundUniforms {
-    /// Nothing: black.
+    /// Black.
     None,
     /// The environment map.
     Environment,
     /// A clear sky with the sun's disc.
     ClearSky(SkyUniforms),
-    /// The same radiance in every direction.
+    /// Uniform radiance.
     Constant(SkyUniforms),
 }
 
@@ -100,7 +100,7 @@ impl BackgroundUniforms {
     }
 }
 
-/// The most instances of a scene whose objects come with the draws ([`CameraView::streams_objects`]).
+/// Maximum number of instances of a scene for streamed objects ([`CameraView::streams_objects`]).
 pub const MAX_STREAMED: usize = 1024;
 
 /// One view of one frame, on the CPU.
@@ -108,57 +108,58 @@ pub const MAX_STREAMED: usize = 1024;
 pub struct CameraView {
     /// Camera, sun and ambient light.
     pub frame: FrameUniforms,
-    /// What the camera may see, by how it is drawn.
+    /// Visible instances, by kind of draw.
     pub visible: DrawLists,
-    /// What stands behind everything.
+    /// Background.
     pub background: BackgroundUniforms,
-    /// Angular radius in radians of the sun's disc, and its halo, where they are drawn.
+    /// Angular radius of the sun's disc in radians, and its halo, if they are drawn.
     pub sun_halo: Option<(f32, SunHalo)>,
-    /// Punctual lights; at least one, so that there is something to bind. `frame.light_count` says how many count.
+    /// Punctual lights. Never empty, so that a binding exists; `frame.light_count` is the number of lights.
     pub lights: Vec<LightUniforms>,
-    /// Which of them reach what part of the view; none where all are looked at everywhere.
+    /// Lists of punctual lights by froxel; `None` if every light is evaluated everywhere.
     pub light_lists: Option<LightLists>,
     /// Light channels of the sun.
     pub sun_channels: u8,
-    /// Whether some punctual light and some instance share no light channel.
+    /// True if some punctual light and some instance share no light channel.
     pub channels_differ: bool,
-    /// What became of the scene's lights.
+    /// Lights that are kept, and lights that are dropped with the reason.
     pub light_report: LightReport,
-    /// What is drawn of it, in which draws.
+    /// Draw lists of the view.
     pub draws: ViewDraws,
-    /// Where the zero point of each instance's mesh is, in m, relative to the eye.
+    /// Origin of each instance's mesh in m, relative to the eye.
     pub origins: Vec<Vec4>,
-    /// How each instance is turned and scaled.
+    /// View-independent transforms of instances.
     pub placements: Placements,
-    /// Whether draws bring the objects of their instances along: a copy of each for each list that draws it, as often as the
-    /// view changes. So it is made up to [`MAX_STREAMED`] instances; vertices of more rather read the scene's, which stay where
-    /// they are. The picture is the same.
+    /// True if the instance stream contains the objects: one copy for each list that draws an instance, uploaded
+    /// whenever the view changes. Scenes of more than [`MAX_STREAMED`] instances read objects from a shared buffer
+    /// instead. The picture does not change.
     pub streams_objects: bool,
-    /// Where instances are and were in clip space, where any has moved since the frame before; of others it is zeros.
+    /// Current and previous transforms to clip space, if an instance moved since the previous frame. Zeros for
+    /// instances that did not move.
     pub motions: Vec<MotionUniforms>,
-    /// Shadow maps, relative to this view's eye; none for a frame without.
+    /// Shadow maps, relative to this view's eye; `None` without shadows.
     pub shadows: Option<ViewShadows>,
-    /// Where the eye is, in m, world space.
+    /// Position of the eye in m, world space.
     pub eye: DVec3,
-    /// World, relative to the eye, to clip space, as if pixels were seen through their middles.
+    /// Clip space from world space relative to the eye, without jitter.
     pub clip_from_world: DMat4,
-    /// How far everything is moved to the right and up for other places of the pixels to be seen, in pixels; set by
-    /// [`CameraView::jitter`].
+    /// Jitter to the right and up in pixels; set by [`CameraView::jitter`].
     pub jitter_px: DVec2,
-    /// How many frames of it there were by [`Views::again`], this one counted.
+    /// Number of consecutive frames of this view by [`Views::again`], including this one.
     pub still_frames: u32,
-    /// From where the frame before was seen ([`CameraView::after`]); none: from here.
+    /// View of the previous frame ([`CameraView::after`]); `None` if it equals this one.
     pub earlier: Option<PreviousView>,
 }
 
 impl CameraView {
-    /// A view of `scene`, lit from all around by `light`. The sun is the environment's own, else the scene's brightest
-    /// directional light; all other lights are punctual. The scene is prepared for this view alone.
+    /// Returns a view of `scene` with the image-based light `light`. The sun is that of the environment, if any,
+    /// otherwise the brightest directional light of the scene. All other lights are punctual. Prepares the scene for
+    /// this view only.
     pub fn new(scene: &Scene, light: &ImageLight, background: &Background, settings: &ViewSettings) -> Self {
         Self::prepared(scene, &PreparedScene::new(scene), light, background, settings)
     }
 
-    /// The same of a scene that was prepared before, and updated since where something moved.
+    /// Returns a view of a prepared scene. [`PreparedScene::update`] must have been called for moved instances.
     pub fn prepared(
         scene: &Scene,
         prepared: &PreparedScene,
@@ -169,9 +170,9 @@ impl CameraView {
         Self::of(scene, prepared, light, background, settings, std::slice::from_ref(settings))
     }
 
-    /// Views of `scene` that share shadow maps: each map is fitted to what all their cameras see, so one view's maps serve
-    /// the others ([`Handles::with`](crate::Handles::with)). All are made as the first one's settings say. A map follows the
-    /// perspective of no camera then.
+    /// Returns views of `scene` that share shadow maps ([`Handles::with`](crate::Handles::with)). Each map is fitted
+    /// to everything that the cameras see. The settings of the first view apply to all of them. Shared maps are not
+    /// warped to the perspective of a camera.
     pub fn together(
         scene: &Scene,
         light: &ImageLight,
@@ -182,13 +183,13 @@ impl CameraView {
         settings.iter().map(|own| Self::of(scene, &prepared, light, background, own, settings)).collect()
     }
 
-    /// The surfaces of a scene that was prepared, without any light.
+    /// Returns a view of the surfaces of a prepared scene, without light.
     pub fn unlit(prepared: &PreparedScene, settings: &ViewSettings) -> Self {
         let levels = settings.unlimited_levels(prepared.renderables());
         Self::empty(settings).with_surfaces(prepared, seen(prepared, settings), settings, levels)
     }
 
-    /// Puts what is seen into a view that has its shadows, in `levels` of detail at the most.
+    /// Adds visible instances to a view with shadows. `levels` limits the levels of detail.
     fn with_surfaces(
         mut self,
         prepared: &PreparedScene,
@@ -215,7 +216,7 @@ impl CameraView {
         Self { draws, visible, origins, placements, streams_objects, ..self }
     }
 
-    /// What is seen and what lights it are found side by side.
+    /// Culls instances and selects lights in parallel.
     fn of(
         scene: &Scene,
         prepared: &PreparedScene,
@@ -232,7 +233,8 @@ impl CameraView {
         lit.with_surfaces(prepared, visible, settings, levels)
     }
 
-    /// A view with its lights and shadows, and no surface; and the levels of detail that its shadow maps allow.
+    /// Returns a view with lights and shadows but without surfaces, and the levels of detail that its shadow maps
+    /// allow.
     fn lit(
         scene: &Scene,
         prepared: &PreparedScene,
@@ -284,16 +286,16 @@ impl CameraView {
         (Self { frame, background, sun_halo, lights, light_lists, light_report, shadows, ..empty }, levels)
     }
 
-    /// The same view in a frame that follows one with the view `before`: passes that read the earlier picture find places in
-    /// it. Without this, the frame before was seen from where this one is, which is so as long as nothing moves.
+    /// Sets the view of the previous frame, which passes use for reprojection. Without it, the previous frame is
+    /// assumed to have the same camera and no motion.
     #[must_use]
     pub fn after(self, before: &Self) -> Self {
         let motions = self.moment().motions_since(&before.moment());
         Self { earlier: Some(before.stand()), still_frames: 0, motions, ..self }
     }
 
-    /// The same view with bodies of the scene that have another shape than in the frame before `before`
-    /// ([`GpuScene::repose`](crate::gpu_scene::upload::GpuScene::repose)), wherever they are.
+    /// Adds motion of meshes that were deformed since the previous frame's view `before`
+    /// ([`GpuScene::repose`](crate::gpu_scene::upload::GpuScene::repose)).
     #[must_use]
     pub fn deformed(self, before: &Self, scene: &Scene) -> Self {
         let bodies = scene.motion.bodies.iter().map(|body| body.instance);
@@ -305,12 +307,12 @@ impl CameraView {
         Moment { clip_from_world: self.clip_from_world, eye: self.eye, placements: &self.placements }
     }
 
-    /// Whether an instance has moved since the frame before.
+    /// Returns true if an instance moved since the previous frame.
     pub fn moves(&self, instance: usize) -> bool {
         self.motions.get(instance).is_some_and(|motion| *motion != MotionUniforms::default())
     }
 
-    /// From where it is seen.
+    /// Returns the camera of this view, for the next frame.
     pub fn stand(&self) -> PreviousView {
         PreviousView {
             eye: self.eye,
@@ -321,15 +323,14 @@ impl CameraView {
         }
     }
 
-    /// Clip space from the world about the eye, moved by the jitter.
+    /// Returns clip space from world space relative to the eye, with jitter.
     fn jittered(&self) -> DMat4 {
         let by = 2.0 * self.jitter_px / self.frame.viewport_size_px.as_dvec2().max(DVec2::ONE);
         DMat4::from_translation(by.extend(0.0)) * self.clip_from_world
     }
 
-    /// Moves everything by so many pixels to the right and up, instead of what it was moved by before: anti-aliasing over
-    /// time sees each pixel through another place in each frame. What was chosen to be drawn stays as it is, so at the
-    /// picture's border half a pixel may lack.
+    /// Sets the jitter to the right and up in pixels, for temporal anti-aliasing. It replaces an earlier jitter. Draw
+    /// lists do not change, so up to half a pixel may be missing at the border of the picture.
     pub fn jitter(&mut self, jitter_px: DVec2) {
         self.jitter_px = jitter_px;
         let clip_from_world = self.jittered();
@@ -337,7 +338,7 @@ impl CameraView {
         self.frame.world_from_clip = inverse(clip_from_world).as_mat4();
     }
 
-    /// A view of nothing, black and without light: for passes over pictures that need to know the camera.
+    /// Returns a black view without instances and lights, for passes over pictures that need the camera.
     pub fn empty(settings: &ViewSettings) -> Self {
         let ViewSettings { camera, size_px: [width, height], ev100, .. } = settings;
         let clip_from_world =
@@ -376,7 +377,7 @@ impl CameraView {
     }
 }
 
-/// What its camera may see.
+/// Returns the instances that the camera may see.
 fn seen(prepared: &PreparedScene, settings: &ViewSettings) -> DrawLists {
     DrawLists::seen(&prepared.shown(settings.visible_layers), &settings.camera, aspect(settings), prepared.pool())
 }
@@ -390,7 +391,7 @@ fn fitted_camera(settings: &ViewSettings) -> FitCamera<'_> {
     FitCamera { camera: &settings.camera, width_over_height: aspect(settings) }
 }
 
-/// The eye, which is the origin, or the direction toward the viewer of a parallel projection.
+/// Returns the eye, which is the origin, or the direction toward the viewer of a parallel projection.
 fn eye_or_direction(camera: &Camera) -> Vec4 {
     match camera.projection {
         Projection::Perspective { .. } => Vec4::W,
@@ -398,7 +399,7 @@ fn eye_or_direction(camera: &Camera) -> Vec4 {
     }
 }
 
-/// The inverse, by whole-matrix inversion in f64; an infinite far plane has one too.
+/// Returns the inverse, computed in f64. A matrix with an infinite far plane is invertible too.
 fn inverse(matrix: DMat4) -> DMat4 {
     let inverse = matrix.inverse();
     if inverse.is_finite() { inverse } else { DMat4::IDENTITY }

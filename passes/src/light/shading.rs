@@ -1,8 +1,9 @@
-//! How surfaces are shaded: the quality of the color pass, and the light that goes with it.
+//! Settings of surface shading, and of the image-based light that it needs.
 //!
-//! Every choice is a constant of the color pass's pipelines, so what is off costs nothing, and choosing another makes
-//! other pipelines, not other shaders. The presets `high` and `low` are Filament's desktop and mobile shading; `ultra` is
-//! `high` with more accurate light. The table, bands and window are also what the light is made with.
+//! Each setting is a constant of the color pass's pipelines, so a disabled feature costs nothing. Changed settings
+//! compile other pipelines, but no other shaders. The presets `high` and `low` are Filament's desktop and mobile
+//! shading. `ultra` is `high` with more accurate image-based light. Table, bands and window also apply when light is
+//! prefiltered.
 
 use crate::light::ibl::{DfgSettings, EnvironmentFormat, IblSettings};
 use crate::settings::key_value::{KeyValue, OptionError};
@@ -10,57 +11,59 @@ use crate::settings::precision::Precision;
 use framegraph_scene::environment::{ShBands, ShWindow};
 use framegraph_shaders::reference::dfg::Visibility;
 
-/// How the color pass shades. See [`Quality`] for sets that go together.
+/// Settings of the color pass. See [`Quality`] for presets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Shading {
-    /// The numbers that it computes in.
+    /// Numeric precision of shading.
     pub precision: Precision,
     /// The visibility term of the specular lobe.
     pub visibility: Visibility,
-    /// The term that the DFG table is made with, and so the [`Lighting`](crate::Lighting): another than the one that
-    /// shades breaks the white furnace twice. Filament shades its low quality with the fast term and the exact term's
-    /// table; pictures of it are met only so.
+    /// Visibility term of the DFG table, and of the [`Lighting`](crate::Lighting). If it differs from `visibility`,
+    /// energy is not conserved (white furnace test). Filament combines the fast term with the table of the exact term
+    /// at low quality; use that to match its pictures.
     pub table: Visibility,
-    /// Least perceptual roughness that is shaded, 0.045…1: 0.045 is safe in f32, 0.089 where half floats shade, which no precision of 16 bits goes below.
+    /// Minimum perceptual roughness, 0.045…1. 0.045 is safe in f32. Half floats use at least 0.089.
     pub roughness_floor: f32,
-    /// Reflectance at grazing fades for an f0 below 0.02, which no material has (Lagarde and de Rousiers, "Moving
-    /// Frostbite to PBR", 2014, section 3.1.3); else it is 1 for all.
+    /// Fades reflectance at grazing angles for f0 below 0.02, which no material has (Lagarde and de Rousiers, "Moving
+    /// Frostbite to PBR", 2014, section 3.1.3). If false, it is 1 for all materials.
     pub f90_fades: bool,
-    /// Image-based light gets back what single scattering loses (Turquin 2019).
+    /// Compensates image-based light for the energy that single scattering loses (Turquin 2019).
     pub compensate_image: bool,
-    /// The sun and punctual lights get it back.
+    /// Compensates the sun and punctual lights for the energy that single scattering loses.
     pub compensate_punctual: bool,
-    /// Bands of irradiance that are evaluated; no more than the light was made with.
+    /// Evaluated bands of irradiance; at most the bands that the light was computed with.
     pub bands: ShBands,
-    /// Whether the [`Lighting`](crate::Lighting)'s high bands are weakened against ringing.
+    /// Windowing of the high bands of [`Lighting`](crate::Lighting) against ringing.
     pub window: ShWindow,
     /// Source of diffuse light from the environment.
     pub irradiance: Irradiance,
-    /// Format that the [`Lighting`](crate::Lighting)'s prefiltered cube is stored in.
+    /// Storage format of the prefiltered cube of [`Lighting`](crate::Lighting).
     pub environment_format: EnvironmentFormat,
-    /// Roughness is widened by how much normals turn within a pixel, as in gltfio's materials; none leaves highlights to
-    /// flicker.
+    /// Increases roughness by the variation of normals within a pixel, as gltfio's materials do. `None` disables it,
+    /// and highlights may flicker.
     pub specular_aa: Option<SpecularAa>,
-    /// Ambient occlusion is brightened by light between the surfaces that occlude (Jiménez et al. 2016).
+    /// Brightens ambient occlusion by light that bounces between occluding surfaces (Jiménez et al. 2016).
     pub multi_bounce: bool,
-    /// Reflections of the environment are occluded by an estimate from ambient occlusion (Lagarde and de Rousiers 2014,
-    /// listing 26), instead of not at all.
+    /// Occludes reflections of the environment by an estimate from ambient occlusion (Lagarde and de Rousiers 2014,
+    /// listing 26). If false, they are not occluded.
     pub specular_occlusion: bool,
-    /// The sun is occluded by the material's ambient occlusion (Chan, "Material Advances in Call of Duty: WWII", 2018).
+    /// Occludes the sun by the material's ambient occlusion (Chan, "Material Advances in Call of Duty: WWII", 2018).
     pub micro_shadows: bool,
-    /// Reflectance under a clear coat by Filament's cubic, which errs by up to 0.022 and knows no square root.
+    /// Approximates reflectance under a clear coat by Filament's cubic, without a square root. The error is at most
+    /// 0.022.
     pub fast_coat: bool,
-    /// The base under a clear coat meets the coat instead of air, which lowers its reflectance at normal incidence, unless
-    /// the material says otherwise ([`ClearCoat::keeps_base_f0`](framegraph_scene::material::ClearCoat::keeps_base_f0)).
-    /// False turns it off for all materials. Filament's material property `clearCoatIorChange`, which gltfio turns off.
+    /// Lowers the f0 of the base under a clear coat, since the base meets the coat instead of air. A material may opt
+    /// out ([`ClearCoat::keeps_base_f0`](framegraph_scene::material::ClearCoat::keeps_base_f0)). This is Filament's
+    /// material property `clearCoatIorChange`, which gltfio disables.
     pub coat_ior_change: bool,
-    /// Blur of things behind rough bodies.
+    /// Blur of the background seen through rough refractive surfaces.
     pub transmission_blur: TransmissionBlur,
-    /// Window that ends punctual lights at their range.
+    /// Window function that ends punctual lights at their range.
     pub light_window: LightWindow,
-    /// Distance from the eye in m, above 0, beyond which no punctual light shines; they fade over the last 11 % of it, to
-    /// half at 0.949 of it. `None`: they never fade. Filament has 100 m, the far end of `setDynamicLightingOptions`.
+    /// Distance from the eye in m, above 0, beyond which punctual lights are off. They fade over the last 11 % of it,
+    /// to half at 0.949 of it. `None` disables fading. Filament uses 100 m, the far end of
+    /// `setDynamicLightingOptions`.
     pub light_fade_m: Option<f32>,
 }
 
@@ -68,35 +71,34 @@ pub struct Shading {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Irradiance {
-    /// Spherical harmonics of [`Shading::bands`], from the frame's uniform block: no texture is read.
+    /// Spherical harmonics of [`Shading::bands`], from the uniform block of the frame. Reads no texture.
     #[default]
     Harmonics,
-    /// Last level of the prefiltered cube, which the lobe of roughness 1 fills with irradiance: no sampler or memory is added,
-    /// and a texture is read. As fine as that level: 16 texels a side in `low`, 4 in `high` and `ultra`. Even light, which has
-    /// no cube, keeps harmonics.
+    /// Last level of the prefiltered cube, where the lobe of roughness 1 approximates irradiance. Needs no more
+    /// samplers or memory, but reads a texture. That level has 16 texels a side in `low`, and 4 in `high` and `ultra`.
+    /// Uniform light has no cube and uses harmonics.
     Cube,
 }
 
-/// Blur of what is seen through rough bodies.
+/// Blur of the background seen through rough refractive surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum TransmissionBlur {
-    /// By the light's spread at the rough face, over the way within the body and the distance from it to the thing behind it.
+    /// By the spread of light at the rough surface, the path within the volume, and the distance to the background.
     #[default]
     Distance,
-    /// By an angle from the eye that the roughness alone decides, as Filament has it. Things that touch the body are blurred
-    /// as much as those far behind.
+    /// By an angle that depends on roughness only, as in Filament. Near and far backgrounds are equally blurred.
     Angle,
 }
 
-/// Factor on a punctual light that ends it at its range, where d is the distance over the range.
+/// Window function of punctual lights, where d is the distance divided by the range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum LightWindow {
     /// 1 − d⁴, as KHR_lights_punctual specifies.
     #[default]
     Gltf,
-    /// (1 − d⁴)², as Filament has it: darker near the range.
+    /// (1 − d⁴)², as in Filament: darker near the range.
     Filament,
 }
 
@@ -106,44 +108,44 @@ pub enum LightWindow {
 pub struct SpecularAa {
     /// Footprint of a pixel, above 0: Filament's is 0.15, the paper's 0.25.
     pub variance: f32,
-    /// The most that may be added to alpha²: Filament's is 0.2, the paper's 0.18.
+    /// Maximum increase of alpha²: Filament's is 0.2, the paper's 0.18.
     pub threshold: f32,
 }
 
 impl SpecularAa {
-    /// Filament's.
+    /// Filament's settings.
     pub const FILAMENT: Self = Self { variance: 0.15, threshold: 0.2 };
 }
 
-/// What alpha does to a surface: values of the shader's `ALPHA_MODE`.
+/// Use of alpha: values of the shader's `ALPHA_MODE`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AlphaUse {
-    /// Nothing: the surface is opaque.
+    /// Opaque: alpha is ignored.
     None = 0,
-    /// Texels below the material's cutoff are not drawn.
+    /// Discards fragments with alpha below the material's cutoff.
     Mask = 1,
-    /// Color is multiplied by alpha, for blending.
+    /// Multiplies color by alpha, for blending.
     Blend = 2,
 }
 
-/// Sets of choices that go together.
+/// Presets of [`Shading`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
-    /// Hammon's visibility term with its own table, roughness from 0.089 on, occlusion without bounces.
+    /// Hammon's visibility term with its own table, minimum roughness 0.089, single-bounce ambient occlusion.
     Low,
-    /// The exact term, roughness from 0.045 on, occlusion with bounces and of reflections.
+    /// Exact visibility term, minimum roughness 0.045, multi-bounce ambient occlusion, specular occlusion.
     #[default]
     High,
-    /// The same with five bands of irradiance and reflections of twice the resolution: for still pictures.
+    /// [`High`](Self::High) with five bands of irradiance and reflections of twice the resolution, for still pictures.
     Ultra,
 }
 
 impl Quality {
-    /// All of them.
+    /// All presets.
     pub const ALL: [Self; 3] = [Self::Low, Self::High, Self::Ultra];
 
-    /// As it is asked for.
+    /// Returns the name used in options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Low => "low",
@@ -152,12 +154,12 @@ impl Quality {
         }
     }
 
-    /// The quality of that name.
+    /// Returns the quality with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quality| quality.name() == name)
     }
 
-    /// What it chooses.
+    /// Returns the shading settings.
     pub const fn shading(self) -> Shading {
         let high = !matches!(self, Self::Low);
         Shading {
@@ -184,31 +186,31 @@ impl Quality {
         }
     }
 
-    /// What its light is made with: the low one has Filament's five levels, the high one seven, which err less between
-    /// levels, and the ultra one eight of a cube of 512 texels (`docs/measurements/image-light.md`).
+    /// Returns the settings of image-based light. `Low` has Filament's five levels. `High` has seven, with a smaller
+    /// error between levels. `Ultra` has eight levels of a 512-texel cube (`docs/measurements/image-light.md`).
     pub const fn light(self) -> LightSettings {
         self.shading().light(self)
     }
 }
 
-/// What light is made with.
+/// Settings of image-based light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSettings {
-    /// The environment's.
+    /// Settings of the prefiltered environment.
     pub image: IblSettings,
-    /// The table's.
+    /// Settings of the DFG table.
     pub dfg: DfgSettings,
 }
 
 impl Default for Shading {
-    /// [`Quality::High`].
+    /// Returns the settings of [`Quality::High`].
     fn default() -> Self {
         Quality::High.shading()
     }
 }
 
 impl Shading {
-    /// What light must be made with for this shading, as fine as `quality` says.
+    /// Returns the settings of image-based light that this shading needs, with the resolution of `quality`.
     pub const fn light(&self, quality: Quality) -> LightSettings {
         let (cube_texels, levels, texels) = match quality {
             Quality::Low => (256, 5, 64),
@@ -220,7 +222,7 @@ impl Shading {
         LightSettings { image, dfg: DfgSettings { texels, visibility: self.table } }
     }
 
-    /// Names of the `override` constants of the color shader. Those of lobes are in shaders that have the lobe.
+    /// Names of the color shader's `override` constants. Constants of a lobe exist only in shaders with that lobe.
     pub const CONSTANTS: [&'static str; 18] = [
         "ALPHA_MODE",
         "FAST_VISIBILITY",
@@ -242,7 +244,7 @@ impl Shading {
         "LIGHT_FADE_INV_FAR2",
     ];
 
-    /// The values of [`Shading::CONSTANTS`] where the light has these `bands`.
+    /// Returns the values of [`Shading::CONSTANTS`] for light with these `bands`.
     pub(crate) fn constants(&self, alpha: AlphaUse, bands: ShBands) -> [f64; Self::CONSTANTS.len()] {
         let aa = self.specular_aa.unwrap_or(SpecularAa { variance: 0.0, threshold: 0.0 });
         [
@@ -267,11 +269,11 @@ impl Shading {
         ]
     }
 
-    /// Changes one choice by name: `visibility=exact`, `floor=0.089`, `bands=5`, `aa=0.15:0.2`. [`Shading::KEYS`] has all.
-    /// The visibility term brings its table.
+    /// Sets a field by name: `visibility=exact`, `floor=0.089`, `bands=5`, `aa=0.15:0.2`. [`Shading::KEYS`] lists all
+    /// keys. Setting the visibility term also sets its table.
     ///
     /// # Errors
-    /// When there is no such key, or it does not take the value: one line that names the key and what it takes.
+    /// Fails on an unknown key or an invalid value, with a message that lists the valid ones.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
         let choice = KeyValue { key, value };
         let (wrong, switch) = (|takes| choice.wrong(takes), || choice.switch());
@@ -371,7 +373,7 @@ impl Shading {
         Ok(())
     }
 
-    /// The names that [`Shading::set`] takes.
+    /// Keys of [`Shading::set`].
     pub const KEYS: [&str; 18] = [
         "visibility",
         "table",
@@ -404,7 +406,7 @@ mod tests {
         Shading::CONSTANTS.iter().zip(values).find(|(own, _)| **own == name).map(|(_, value)| value)
     }
 
-    /// The shader has all of these constants, and its defaults are the default quality.
+    /// The shader has all constants, and its defaults are the default quality.
     #[test]
     fn the_constants_are_those_of_the_shader() -> Result<(), Box<dyn std::error::Error>> {
         let features =

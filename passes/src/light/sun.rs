@@ -1,9 +1,9 @@
-//! Which light of a scene is the sun: the one that casts shadows by cascades.
+//! Selection of the sun: the light with cascaded shadows.
 
 use framegraph_scene::{Light, LightKind, Scene, SunHalo};
 
-/// The light that casts the shadow by cascades: `own`, the sun that came with the environment, if that is on; else the
-/// scene's brightest directional light.
+/// Returns the light with cascaded shadows: `own`, the sun of the environment, if it is on; otherwise the brightest
+/// directional light of the scene.
 pub(crate) fn sun_of<'a>(scene: &'a Scene, own: Option<&'a Light>) -> Option<&'a Light> {
     let directional = |light: &&Light| matches!(light.kind, LightKind::Directional { .. }) && light.is_on();
     let suns = scene.lights.iter().filter(directional);
@@ -11,13 +11,13 @@ pub(crate) fn sun_of<'a>(scene: &'a Scene, own: Option<&'a Light>) -> Option<&'a
     own.filter(|sun| sun.is_on()).or_else(brightest)
 }
 
-/// Whether a scene with this sun of its environment has a sun that is on.
+/// Returns true if the scene, or the sun of its environment, has a sun that is on.
 #[must_use]
 pub fn has_sun(scene: &Scene, own: Option<&Light>) -> bool {
     sun_of(scene, own).is_some()
 }
 
-/// Illuminance of a directional light in lux, on a surface that faces it; 0 for others.
+/// Returns the illuminance of a directional light in lux, on a surface that faces it; 0 for other lights.
 pub(crate) fn illuminance_lux(light: &Light) -> f32 {
     match light.kind {
         LightKind::Directional { illuminance_lux, .. } => illuminance_lux,
@@ -25,13 +25,14 @@ pub(crate) fn illuminance_lux(light: &Light) -> f32 {
     }
 }
 
-/// Angular radius in radians of a directional light's disc as it is drawn with a halo, and the halo; none where it has none.
+/// Returns the angular radius of a directional light's disc in radians, as drawn with a halo, and the halo. `None`
+/// without a halo.
 pub(crate) fn halo_of(light: &Light) -> Option<(f32, SunHalo)> {
     let radius_rad = angular_radius_rad(light);
     light.halo.map(|halo| (if radius_rad > 0.0 { radius_rad } else { SunHalo::RADIUS_RAD }, halo))
 }
 
-/// Angular radius of a directional light's disc in radians; 0 for others.
+/// Returns the angular radius of a directional light's disc in radians; 0 for other lights.
 pub(crate) fn angular_radius_rad(light: &Light) -> f32 {
     match light.kind {
         LightKind::Directional { angular_radius_rad, .. } => angular_radius_rad,

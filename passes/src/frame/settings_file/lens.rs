@@ -3,7 +3,7 @@
 use crate::Settings;
 use crate::effects::fog::FogColor;
 
-/// Numbers with their ranges, of what a frame has.
+/// Returns the numbers of a frame with their ranges.
 pub(super) fn ranges(s: &Settings) -> Vec<(&'static str, f64, f64, f64)> {
     let mut all = Vec::new();
     let finite = f64::from(f32::MAX);

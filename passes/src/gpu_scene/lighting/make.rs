@@ -1,4 +1,4 @@
-//! Making the light of an environment.
+//! Creation of image-based light from an environment.
 
 use super::Lighting;
 use crate::gpu_scene::upload::{GpuEnvironment, UploadError};
@@ -8,7 +8,7 @@ use crate::light::shading::LightSettings;
 use framegraph_scene::{Environment, ProgressFn};
 use framegraph_wgpu::Gpu;
 
-/// Light could not be made of an environment.
+/// Error of creating light from an environment.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum LightingError {
@@ -27,11 +27,11 @@ impl std::fmt::Debug for LightingError {
 }
 
 impl Lighting {
-    /// Uploads `environment` and makes light of it, or finds that in `cache`. The work is reported step by step and can be
-    /// stopped at each.
+    /// Uploads `environment` and prefilters it, or loads the result from `cache`. Reports each step to `progress`,
+    /// which can stop the work.
     ///
     /// # Errors
-    /// When a setting is out of range, when `progress` asks to stop, or when the device fails.
+    /// Fails if a setting is out of range, `progress` stops the work, or the device fails.
     pub fn new(
         gpu: &Gpu,
         environment: &Environment,

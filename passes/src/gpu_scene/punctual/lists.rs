@@ -1,4 +1,4 @@
-//! The lists of lights by froxel, and what became of a scene's lights.
+//! Light lists by froxel, and a report on the lights of a scene.
 
 use super::assign::froxels_of;
 use super::grid::FroxelGrid;
@@ -10,39 +10,39 @@ use framegraph_scene::Renderables;
 use framegraph_shaders::layout::FroxelUniforms;
 use glam::DQuat;
 
-/// Most entries of all lists, 16 MiB of them.
+/// Maximum number of entries of all lists, 16 MiB.
 const MAX_ENTRIES: usize = 1 << 22;
 
-/// Lists of lights by froxel, as shaders read them.
+/// Light lists by froxel, in the layout of shaders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightLists {
-    /// How the view is cut.
+    /// Froxel grid of the view.
     pub uniforms: FroxelUniforms,
-    /// For each froxel where its list begins, and where the last one ends; then the lists, numbers of the view's lights in
-    /// rising order.
+    /// Start of each froxel's list, and the end of the last one; then the lists of light indices in increasing order.
     pub words: Vec<u32>,
 }
 
 impl LightLists {
-    /// Storage buffers that a fragment stage binds with lists: the lights, the lists and the shadow maps.
+    /// Number of storage buffers of a fragment stage with lists: lights, lists and shadow maps.
     const STORAGE_BUFFERS: u32 = 3;
 
-    /// Whether a device of these limits binds lists beside what shading binds without them. Where it does not, all lights are
-    /// looked at, which is the same picture.
+    /// Returns true if a device with these limits can bind light lists in addition to the other bindings of shading.
+    /// Otherwise every light is evaluated everywhere, with the same picture.
     pub fn can_be_bound(limits: &wgpu::Limits) -> bool {
         limits.max_storage_buffers_per_shader_stage >= Self::STORAGE_BUFFERS
     }
 
-    /// The list of froxel `number`.
+    /// Returns the list of froxel `number`.
     ///
     /// # Panics
-    /// When there is no such froxel.
+    /// Panics if the froxel does not exist.
     pub fn list(&self, number: usize) -> &[u32] {
         let [begin, end] = [self.words[number], self.words[number + 1]];
         &self.words[begin as usize..end as usize]
     }
 
-    /// Lists from the froxels of each light; none when they hold too much. `everywhere` lights come before the first one.
+    /// Builds lists from the froxels of each light; `None` if there are too many entries. Lights without a range,
+    /// `everywhere` of them, come first.
     fn new(grid: &FroxelGrid, reaches: &[Reach], view_from_world: DQuat, everywhere: u32) -> Option<Self> {
         let count = grid.count();
         let mut hits: Vec<[u32; 2]> = Vec::new();
@@ -54,7 +54,7 @@ impl LightLists {
         }
         let head = count + 1;
         let mut words = vec![0; head + hits.len()];
-        // How long each list is, then where each begins.
+        // Counts the entries of each list, then sums them into offsets.
         for [froxel, _] in &hits {
             words[*froxel as usize + 1] += 1;
         }
@@ -72,44 +72,44 @@ impl LightLists {
     }
 }
 
-/// What became of the lights of a scene in a view. The sun is not counted.
+/// Report on the lights of a scene in a view. The sun is not counted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightReport {
-    /// Lights that are shaded with.
+    /// Number of lights that are kept.
     pub kept: usize,
-    /// Numbers of the others among the scene's lights.
+    /// Indices of dropped lights in the scene, with reasons.
     pub dropped: Vec<(usize, DropReason)>,
-    /// How those that are kept are found.
+    /// Method of finding the lights that are kept.
     pub found: Found,
 }
 
-/// How lights are found at a place.
+/// Method of finding lights in a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Found {
-    /// In the lists of froxels.
+    /// Light lists by froxel.
     ByFroxels {
-        /// Tiles across and down, and slices.
+        /// Number of tiles across and down, and of slices.
         counts: [u32; 3],
-        /// Lights that are in no list, since they have no end.
+        /// Number of lights without a finite range, which are in no list.
         everywhere: usize,
-        /// Entries of all lists.
+        /// Number of entries of all lists.
         entries: usize,
-        /// Entries of the longest list.
+        /// Number of entries of the longest list.
         longest: usize,
     },
-    /// All lights are looked at.
+    /// Every light is evaluated everywhere.
     All(LookedAtAll),
 }
 
-/// Why all lights are looked at everywhere.
+/// Reason for evaluating every light everywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LookedAtAll {
-    /// It was asked for, or there are no lights to be found.
+    /// Requested, or there are no lights.
     #[default]
     Asked,
-    /// So few lights have an end that lists take longer.
+    /// Number of lights with a finite range, too few for lists to be faster.
     Few(usize),
-    /// Lists would hold too much.
+    /// The lists would have too many entries.
     TooLong,
 }
 
@@ -153,7 +153,7 @@ impl std::fmt::Display for LightReport {
     }
 }
 
-/// The lists of a view's lights, if they are found by lists, and what became of them.
+/// Returns the light lists of a view, if it uses them, and the report.
 pub(crate) fn lists(
     scene: &Renderables,
     selection: Selection<'_>,

@@ -1,4 +1,4 @@
-//! Which lights of a scene are shaded with, and why the others are not.
+//! Selection of punctual lights, with the reasons for dropped ones.
 
 use super::reach::Reach;
 use crate::gpu_scene::shadow_views::FitCamera;
@@ -7,23 +7,23 @@ use framegraph_scene::{Aabb, Frustum, Light, Renderables, Scene};
 use framegraph_shaders::layout::LightError;
 use glam::{DVec3, DVec4};
 
-/// More tests of a light against a box than this are not made: what is seen is then one box.
+/// Maximum number of tests of lights against boxes. Above it, one box around all visible instances is tested.
 const MAX_TESTS: usize = 1 << 20;
 
-/// Why a light cannot add anything to a picture.
+/// Reason why a light cannot contribute to a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DropReason {
-    /// Its intensity or its color is zero.
+    /// Intensity or color is zero.
     Off,
-    /// It breaks a promise of the scene's lights.
+    /// The light is invalid.
     Unusable(LightError),
-    /// It reaches nothing beyond the camera's near plane.
+    /// Reaches no point beyond the near plane.
     Behind,
-    /// It reaches nothing before the camera's far plane.
+    /// Reaches no point in front of the far plane.
     Beyond,
-    /// It reaches nothing within the picture's borders.
+    /// Reaches no point within the borders of the picture.
     Beside,
-    /// It reaches none of the surfaces that may be seen.
+    /// Reaches no visible surface.
     NoSurface,
 }
 
@@ -40,14 +40,14 @@ impl std::fmt::Display for DropReason {
     }
 }
 
-/// The lights of a scene for cameras that share them.
+/// Lights of a scene for cameras that share them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Selection<'a> {
-    /// Those that may add something, those without an end first, else in the scene's order.
+    /// Lights that may contribute. Those without a finite range come first, the others in scene order.
     pub kept: Vec<&'a Light>,
-    /// How many of them have no end.
+    /// Number of lights without a finite range.
     pub everywhere: usize,
-    /// Numbers of the others among the scene's lights. The sun is in neither.
+    /// Indices of dropped lights in the scene. The sun is in neither list.
     pub dropped: Vec<(usize, DropReason)>,
 }
 
@@ -59,7 +59,7 @@ impl Selection<'_> {
     }
 }
 
-/// Sorts the lights of a scene but the sun. A light is kept if any of the cameras may see what it lights.
+/// Selects lights except the sun. A light is kept if any camera may see a surface that it reaches.
 pub(crate) fn select<'a>(
     scene: &'a Scene,
     renderables: &Renderables,
@@ -85,7 +85,7 @@ pub(crate) fn select<'a>(
     found
 }
 
-/// Whether a light that is kept has an end; or why it is dropped.
+/// Returns true if a kept light has a finite range; otherwise the reason for dropping it.
 fn why_not(light: &Light, bounds: &Aabb, views: &[Seen]) -> Result<bool, DropReason> {
     if !light.is_on() {
         return Err(DropReason::Off);
@@ -102,10 +102,10 @@ fn why_not(light: &Light, bounds: &Aabb, views: &[Seen]) -> Result<bool, DropRea
     Err(why.unwrap_or(DropReason::NoSurface))
 }
 
-/// What one camera may see.
+/// Region that one camera may see.
 struct Seen {
     eye: DVec3,
-    /// Left, right, bottom, top, near, and far if there is one; world axes, about the eye.
+    /// Planes left, right, bottom, top, near, and far if any; world axes, relative to the eye.
     planes: Vec<DVec4>,
     surfaces: Vec<Aabb>,
 }
@@ -125,7 +125,7 @@ impl Seen {
 
     fn misses(&self, reach: &Reach) -> Option<DropReason> {
         let outside = |plane: &DVec4| plane.truncate().dot(reach.center) + plane.w < -reach.radius_m;
-        // Behind comes first: a light behind the camera is often beside it too.
+        // The near plane is tested first, since a light behind the camera is often outside other planes too.
         let which = [4, 5, 0, 1, 2, 3].into_iter().find(|which| self.planes.get(*which).is_some_and(outside));
         match which {
             Some(4) => Some(DropReason::Behind),

@@ -1,40 +1,40 @@
-//! How shading finds the lights that reach a place, by name: `auto`, `all`, `froxels`, `froxels:slices=24,far=200`.
+//! Methods of finding punctual lights, by name: `auto`, `all`, `froxels`, `froxels:slices=24,far=200`.
 
 use crate::settings::key_value::{KeyValue, OptionError, choices};
 
-/// How shading finds the lights that reach a place.
+/// Method of finding the punctual lights that reach a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum LightSearch {
-    /// By froxels where at least [`LightSearch::FEW`] lights have an end, else as `All`.
+    /// Uses froxels if at least [`LightSearch::FEW`] lights have a finite range, and `All` otherwise.
     Auto(FroxelSettings),
-    /// In the list of the froxel that the place is in.
+    /// Evaluates the lights in the list of the point's froxel.
     Froxels(FroxelSettings),
-    /// Every light is looked at everywhere.
+    /// Evaluates every light everywhere.
     All,
 }
 
-/// How what is seen is cut into froxels. Numbers are Filament's, but for the tiles: it cuts into 512 at most, of which a
-/// picture of 1280×720 has 27×15.
+/// Froxel grid of a view. Defaults are Filament's, except for the tiles: Filament allows up to 512, of which a picture
+/// of 1280×720 has 27×15.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct FroxelSettings {
-    /// Tiles of the picture, at most, 1…4096; they are squares, whole multiples of 8 pixels a side.
+    /// Maximum number of tiles, 1…4096. Tiles are square, and their side is a multiple of 8 pixels.
     pub tiles: u32,
-    /// Slices of distance, 1…64.
+    /// Number of depth slices, 1…64.
     pub slices: u32,
-    /// Where the first slice ends, in meters ahead of the eye, above 0.
+    /// Far end of the first slice in meters ahead of the eye, above 0.
     pub near_m: f32,
-    /// Where the last slice would end if the next one were as much larger, in meters, above `near_m`; it goes on from
-    /// there without end.
+    /// Nominal far end of the last slice in meters, above `near_m`. Slice ends grow exponentially up to it; the last
+    /// slice is unbounded.
     pub far_m: f32,
 }
 
 impl FroxelSettings {
-    /// 16×9 tiles of a picture of that shape, 16 slices, of which the first ends at 5 m and the last is cut for 100 m.
+    /// Default: 16×9 tiles in a 16:9 picture; 16 slices between 5 m and 100 m.
     pub const DEFAULT: Self = Self { tiles: 144, slices: 16, near_m: 5.0, far_m: 100.0 };
 
-    /// The names that can be set.
+    /// Keys of the settings.
     pub const KEYS: [&str; 4] = ["tiles", "slices", "near", "far"];
 
     fn set(&mut self, choice: KeyValue<'_>) -> Result<(), OptionError> {
@@ -50,13 +50,13 @@ impl FroxelSettings {
 }
 
 impl LightSearch {
-    /// So many lights that have an end are found faster by froxels (`docs/design/lights.md`).
+    /// Minimum number of lights with a finite range for which froxels are faster (`docs/design/lights.md`).
     pub const FEW: usize = 4;
 
-    /// What is asked for as `auto`, `all` or `froxels`; the first and the last with changes: `froxels:slices=24,far=200`.
+    /// Parses `auto`, `all` or `froxels`, the first and the last with settings: `froxels:slices=24,far=200`.
     ///
     /// # Errors
-    /// When there is no such way or choice, or it does not take the value: one line that names it and what it takes.
+    /// Fails on an unknown method or key, or an invalid value, with a message that lists the valid ones.
     pub fn from_text(text: &str) -> Result<Self, OptionError> {
         let (way, changes) = text.split_once(':').unwrap_or((text, ""));
         let mut settings = FroxelSettings::DEFAULT;
@@ -80,7 +80,7 @@ impl LightSearch {
 }
 
 impl Default for LightSearch {
-    /// [`LightSearch::Auto`].
+    /// Returns [`LightSearch::Auto`].
     fn default() -> Self {
         Self::Auto(FroxelSettings::DEFAULT)
     }

@@ -1,4 +1,4 @@
-//! Maps of spot lights and of the six faces about point lights.
+//! Shadow maps of spot lights, and of the six cube faces of point lights.
 
 use super::atlas::{self, Place};
 use super::fitted::Fitted;
@@ -6,12 +6,12 @@ use super::settings::ShadowSettings;
 use framegraph_scene::{Aabb, DrawLists, Light, LightKind, Renderables};
 use glam::{DMat4, DVec3, DVec4};
 
-/// Distance of a local map's near plane from the light, in meters.
+/// Distance of a map's near plane from a punctual light, in meters.
 const NEAR_M: f64 = 0.01;
-/// Texels around a face that belong to its neighbors, so that taps near an edge find what is there.
+/// Border of a face in texels, rendered beyond its edge so that filter taps near the edge are valid.
 const GUARD_TEXELS: f64 = 2.0;
 
-/// Faces about a point light: +x, -x, +y, -y, +z, -z, each with the axis that is to its right.
+/// Cube faces of a point light: +x, -x, +y, -y, +z, -z, each with the axis to its right.
 const FACES: [[DVec3; 2]; 6] = [
     [DVec3::X, DVec3::Z],
     [DVec3::NEG_X, DVec3::Z],
@@ -21,8 +21,8 @@ const FACES: [[DVec3; 2]; 6] = [
     [DVec3::NEG_Z, DVec3::X],
 ];
 
-/// Maps that a light takes: one for a spot, six for a point; a parallel light that is not the sun has none, and neither has a
-/// light whose shadows have no strength.
+/// Returns the number of maps of a light: one for a spot light, six for a point light. 0 for directional lights and
+/// for lights whose shadows have no strength.
 pub(crate) fn maps_of(light: &Light) -> usize {
     match light.kind {
         _ if light.held_shadow_strength() == 0.0 => 0,
@@ -32,22 +32,22 @@ pub(crate) fn maps_of(light: &Light) -> usize {
     }
 }
 
-/// What a light is worth to a viewer at `eye`: the share of the view that it fills, as its reach over its distance, at most 1.
+/// Returns the importance of a light for a viewer at `eye`: reach divided by distance, at most 1.
 fn importance(light: &Light, reach_m: f64, eye: DVec3) -> f64 {
     let distance_m = (light.position - eye).length();
     (reach_m / distance_m.max(1e-6)).min(1.0)
 }
 
-/// How far a light reaches into the scene.
+/// Returns the distance that a light reaches within the scene.
 fn reach_m(light: &Light, bounds: &Aabb) -> f64 {
     let (LightKind::Point { range_m, .. } | LightKind::Spot { range_m, .. }) = light.kind else { return 0.0 };
     let whole_m = (bounds.center() - light.position).length() + bounds.radius();
     range_m.map_or(whole_m, |range| f64::from(range).min(whole_m)).max(2.0 * NEAR_M)
 }
 
-/// The lights of `lights` that get maps, by number, from the most important to the least, and how often the side of a layer is
-/// halved for each: as their importance says, and once more each until all fit their layers. Where even the smallest maps do
-/// not, the least important lights have none.
+/// Returns the indices of lights with maps, most important first, and the number of times that the side of a layer is
+/// halved for each. All maps are halved further until they fit the layers. If even the smallest maps do not fit, the
+/// least important lights have none.
 fn chosen(lights: &[&Light], bounds: &Aabb, eye: DVec3, settings: &ShadowSettings) -> Vec<(usize, u32)> {
     let layer_texels = settings.map_texels;
     let mut order: Vec<(usize, f64)> = lights
@@ -75,17 +75,17 @@ fn chosen(lights: &[&Light], bounds: &Aabb, eye: DVec3, settings: &ShadowSetting
     chosen
 }
 
-/// Of each map of the lights, in order, how often a layer's side is halved for it.
+/// Returns the number of halvings of each map, in the order of lights.
 fn squares(lights: &[&Light], chosen: &[(usize, u32)]) -> Vec<u32> {
     chosen.iter().flat_map(|(index, halved)| std::iter::repeat_n(*halved, maps_of(lights[*index]))).collect()
 }
 
-/// How many layers the maps of `lights` share in a scene within `bounds`.
+/// Returns the number of layers that the maps of `lights` share in a scene within `bounds`.
 pub(crate) fn layers(bounds: &Aabb, lights: &[&Light], eye: DVec3, settings: &ShadowSettings) -> u64 {
     atlas::layers(squares(lights, &chosen(lights, bounds, eye, settings)))
 }
 
-/// For each light of `lights` the number of its first map, if it has any; and the maps.
+/// Returns the index of the first map of each light, if any, and the maps.
 pub(crate) fn fit(
     scene: &Renderables,
     lights: &[&Light],
@@ -102,7 +102,7 @@ pub(crate) fn fit(
         let light = lights[index];
         starts[index] = Some(maps.len() as u32);
         let (position, far_m) = (light.position, reach_m(light, &bounds));
-        // As many as the light has squares.
+        // Same number of maps as the light has squares.
         match light.kind {
             LightKind::Directional { .. } => {}
             LightKind::Point { .. } => {
@@ -112,7 +112,7 @@ pub(crate) fn fit(
             }
             LightKind::Spot { outer_cone_rad, .. } => {
                 let direction = light.direction.as_dvec3();
-                // A cone of half a turn would need a map without end.
+                // A half angle of 90° would need an infinite map.
                 let tan_half = f64::from(outer_cone_rad).min(1.55).tan();
                 let right = if direction.y.abs() > 0.99 { DVec3::X } else { direction.cross(DVec3::Y).normalize() };
                 let right = (right - direction * direction.dot(right)).normalize();
@@ -124,7 +124,7 @@ pub(crate) fn fit(
     (starts, maps)
 }
 
-/// A pyramid of light.
+/// Perspective view of a punctual light.
 struct LocalView {
     position: DVec3,
     direction: DVec3,

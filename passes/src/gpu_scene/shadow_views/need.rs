@@ -1,4 +1,4 @@
-//! What shadow maps a view has use for, found before any is fitted.
+//! Shadow maps that a view needs, determined before any map is fitted.
 
 use super::local;
 use super::settings::ShadowSettings;
@@ -7,23 +7,25 @@ use super::volume::FitCamera;
 use framegraph_scene::{Light, Renderables};
 use glam::DVec3;
 
-/// What shadow maps a view has use for.
+/// Shadow maps that a view needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ShadowNeed {
-    /// Casters whose shadows of the sun may fall on what is seen: those within what is seen, swept toward the sun.
+    /// Number of casters whose sun shadows may fall on visible surfaces: those within the view volume, swept toward
+    /// the sun.
     pub sun_casters: usize,
-    /// Distances ahead of the eye of the nearest and farthest place that they may fall on.
+    /// Distances ahead of the eye of the nearest and farthest receiver.
     pub receivers_m: Option<(f64, f64)>,
-    /// Maps that the lamps which reach what is seen have room for.
+    /// Number of maps of the punctual lights that reach visible surfaces, within the limit.
     pub lamp_maps: usize,
-    /// Layers that these share.
+    /// Number of layers that these maps share.
     pub lamp_layers: usize,
-    /// Casters in these.
+    /// Number of casters in these maps.
     pub lamp_casters: usize,
 }
 
 impl ShadowNeed {
-    /// That of cameras which share maps, for the sun and for the lamps that reach what they see.
+    /// Returns the need of cameras that share maps, for the sun and for the punctual lights that reach visible
+    /// surfaces.
     pub fn of(
         scene: &Renderables,
         sun: Option<&Light>,

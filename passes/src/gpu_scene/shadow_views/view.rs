@@ -10,33 +10,31 @@ use framegraph_scene::{DrawLists, Light, LightKind, Renderables, Scene};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowUniforms};
 use glam::{DVec3, Vec4};
 
-/// Radius of a spot or point light's bulb in meters where the settings have none: Filament's.
+/// Default radius of a punctual light's bulb in meters: Filament's.
 const BULB_M: f32 = 0.02;
 
-/// The shadow maps of a view: cascades of the sun, a layer each of one texture, then maps of local lights, which share the
-/// other layers.
+/// Shadow maps of a view: one layer for each cascade of the sun, then the layers that maps of punctual lights share.
 #[derive(Clone, Debug)]
 pub struct ViewShadows {
-    /// What shaders read that is the same for all maps, and of the sun's.
+    /// Shader data common to all maps, and of the sun's maps.
     pub uniforms: ShadowUniforms,
-    /// How many of the maps are cascades of the sun.
+    /// Number of cascades of the sun.
     pub cascades: usize,
-    /// Cascades, then those of local lights.
+    /// Cascades, then maps of punctual lights.
     pub maps: Vec<ShadowMap>,
-    /// What each map is made of.
+    /// Cache key of each map.
     pub(crate) keys: Vec<MapKey>,
-    /// Of each punctual light of the view, the number of its first map among those of local lights.
+    /// Index of the first map of each punctual light, among the maps of punctual lights.
     pub(crate) of_lights: Vec<Option<u32>>,
-    /// Whether the shadows of a light are weaker than 1.
+    /// True if the shadows of a light are weaker than 1.
     pub are_weak: bool,
-    /// As asked for.
+    /// Requested settings.
     pub settings: ShadowSettings,
 }
 
 impl ViewShadows {
-    /// Fits maps for a view at `eye` that shares them with other cameras: all see what they need in them. The first camera
-    /// of `cameras` is the one that cascades are told apart by, and whose perspective the maps follow if it is alone. `levels` are
-    /// limited to what is `lod_error_texels` from the meshes at most.
+    /// Fits maps for a view at `eye`. All `cameras` share the maps. The first camera splits the cascades, and the maps
+    /// are warped to it if it is the only one. `levels` are limited to an error of `lod_error_texels`.
     pub(crate) fn fit(
         scene: &Renderables,
         sun: Option<&Light>,
@@ -99,28 +97,28 @@ impl ViewShadows {
         (Self { uniforms, cascades, maps, keys, of_lights, are_weak, settings: *settings }, levels)
     }
 
-    /// Notes in which level of detail each instance is drawn, by its number.
+    /// Records the level of detail of each instance, by instance number.
     pub(crate) fn set_levels(&mut self, levels: &[u8]) {
         for (number, _, level) in self.keys.iter_mut().flat_map(|key| &mut key.casters) {
             *level = level_of(levels, *number);
         }
     }
 
-    /// What shaders read of each map of a local light.
+    /// Returns the shader data of each map of a punctual light.
     pub(crate) fn local_uniforms(&self) -> Vec<ShadowMapUniforms> {
         self.maps[self.cascades..].iter().map(|map| map.uniforms).collect()
     }
 }
 
-/// How many maps the spot and point lights of a scene call for, beside the sun's, at most as many as there may be.
+/// Returns the number of maps that the punctual lights of a scene need in addition to the sun's, within the limit.
 #[must_use]
 pub fn local_maps(scene: &Scene, cascades: u8) -> u8 {
     let count: usize = scene.lights.iter().filter(|light| light.is_on()).map(local::maps_of).sum();
     count.min(usize::from(MAX_MAPS) - usize::from(cascades)) as u8
 }
 
-/// How many layers the spot and point lights of a scene share, seen from `eye`, at most as many as the settings allow: what
-/// to set [`ShadowSettings::local_layers`] to where they allow more.
+/// Returns the number of layers that maps of punctual lights share, seen from `eye`, within the limit of `settings`.
+/// Use it to reduce [`ShadowSettings::local_layers`].
 #[must_use]
 pub fn local_layers(scene: &Scene, eye: DVec3, settings: &ShadowSettings) -> u8 {
     let lights: Vec<&Light> = scene.lights.iter().filter(|light| light.is_on()).collect();

@@ -1,4 +1,4 @@
-//! A posed scene on the device: vertices that joints and morph targets have moved, and materials that animations change.
+//! Deformed meshes on the device: vertices moved by joints and morph targets, and animated materials.
 
 use super::error::UploadError;
 use super::pack::{vertex_attributes, vertex_positions};
@@ -10,14 +10,14 @@ use framegraph_wgpu::Gpu;
 use wgpu::{BufferDescriptor, BufferUsages, CommandEncoderDescriptor};
 
 impl GpuScene {
-    /// Uploads the vertices of bodies and the animated materials as [`Scene::pose`] has left them, and keeps the earlier
-    /// positions for velocity. Call it once for each frame in which the scene was posed, and once more after the last.
+    /// Uploads the deformed vertices and animated materials of [`Scene::pose`], and keeps the previous positions for
+    /// motion vectors. Call it once for each frame in which the scene was posed, and once after the last.
     ///
     /// # Errors
-    /// When the device fails.
+    /// Fails if the device fails.
     ///
     /// # Panics
-    /// For another, larger scene than the one that was uploaded.
+    /// Panics if `scene` is larger than the uploaded scene.
     pub fn repose(&mut self, gpu: &Gpu, scene: &Scene) -> Result<(), UploadError> {
         for (material, _) in &scene.motion.rest.materials {
             self.write_material(gpu, *material, &scene.materials[material.index()])?;
@@ -44,7 +44,7 @@ impl GpuScene {
                 let (at, count) = (first * position_bytes, scene.meshes[mesh.index()].positions.len() as u64);
                 encoder.copy_buffer_to_buffer(&self.positions, at, earlier, at, count * position_bytes);
             }
-            // What is written below is so before the next submission: the copies are of this one.
+            // Submitted before the writes below, so that the copies have the previous positions.
             gpu.queue.submit([encoder.finish()]);
             for (mesh, first) in &bodies {
                 let own = &scene.meshes[mesh.index()];
@@ -57,7 +57,7 @@ impl GpuScene {
         Ok(written?)
     }
 
-    /// Vertex buffer of `layout::VertexPosition`, as it was in the frame before.
+    /// Returns the vertex buffer of `layout::VertexPosition` of the previous frame.
     pub(crate) fn earlier_positions(&self) -> &wgpu::Buffer {
         self.earlier.as_ref().unwrap_or(&self.positions)
     }

@@ -13,27 +13,26 @@ use framegraph_scene::error::Quantity;
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 use framegraph_wgpu::Gpu;
 
-/// An equirectangular radiance map as RGBA16F with its full chain of levels, averaged by solid
-/// angle. Values are those of the map, cut at 65504.
+/// Equirectangular radiance map as RGBA16F with a full mip chain, averaged by solid angle. Values are clamped to
+/// 65504.
 #[derive(Debug)]
 pub struct GpuEnvironment {
     /// The whole map, all levels.
     pub view: TextureView,
     /// Width and height of level 0 in texels.
     pub size_texels: [u32; 2],
-    /// How many levels there are.
+    /// Number of levels.
     pub level_count: u32,
-    /// Bytes of all levels.
+    /// Size of all levels in bytes.
     pub size_bytes: u64,
 }
 
 impl GpuEnvironment {
-    /// Copies the map to the device.
+    /// Uploads the map.
     ///
     /// # Errors
     ///
-    /// When it exceeds the device's limit (the message names both), when `progress` asks to stop, or
-    /// when the device fails.
+    /// Fails if the map exceeds a limit of the device, `progress` stops the work, or the device fails.
     pub fn upload(gpu: &Gpu, environment: &Environment, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
         let (name, map) = (&environment.name, &environment.map);
         let side = u64::from(map.width().max(map.height()));

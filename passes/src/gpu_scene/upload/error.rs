@@ -1,19 +1,19 @@
-//! Why a scene did not reach the GPU.
+//! Errors of uploading a scene.
 
 use framegraph_scene::{ImageFormat, SceneError};
 use framegraph_wgpu::DeviceError;
 
-/// Why a scene did not reach the GPU.
+/// Error of uploading a scene.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum UploadError {
-    /// Something of it exceeds a limit of the device, or the upload was interrupted.
+    /// The scene exceeds a limit of the device, or the upload was interrupted.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The device refused, ran out of memory, or was lost.
+    /// The device failed, ran out of memory, or was lost.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// An image is of blocks that the device does not sample.
+    /// The device cannot sample the block format of an image.
     #[error("{image}: this device does not sample {}; load the scene with the `block_formats` of the device", name_of(*format))]
     Format {
         /// Name of the image.
@@ -26,14 +26,14 @@ pub enum UploadError {
         "material {number} `{name}` has other lobes than the one that was uploaded, or there was none; upload the scene anew"
     )]
     OtherMaterial {
-        /// Its name.
+        /// Name of the material.
         name: String,
-        /// Its number.
+        /// Index of the material.
         number: usize,
     },
 }
 
-/// Returns the name that the specification of a format gives it.
+/// Returns the name of a format in its specification.
 fn name_of(format: ImageFormat) -> &'static str {
     match format {
         ImageFormat::Rgba8 => "RGBA8",

@@ -1,17 +1,18 @@
-//! What drawing an instance takes beside its placement.
+//! Data for drawing an instance, except its transform.
 
 use framegraph_scene::{Instance, MaterialId, MeshId};
 
-/// An instance as draws need it, whatever the view.
+/// View-independent data for drawing an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InstanceDraw {
-    /// Its mesh.
+    /// Mesh.
     pub mesh: MeshId,
-    /// Its material.
+    /// Material.
     pub material: MaterialId,
-    /// Its transform mirrors: front faces wind clockwise.
+    /// True if the transform mirrors, so that front faces are clockwise.
     pub mirrored: bool,
-    /// Its light channels, and 256 if it receives no shadows ([`DrawOptions::light_bits`](framegraph_scene::DrawOptions::light_bits)).
+    /// Light channels, plus 256 if the instance receives no shadows
+    /// ([`DrawOptions::light_bits`](framegraph_scene::DrawOptions::light_bits)).
     pub light_bits: u16,
 }
 

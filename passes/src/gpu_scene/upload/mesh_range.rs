@@ -2,33 +2,33 @@
 
 use framegraph_scene::{Mesh, MeshId, Topology};
 
-/// The part of the shared buffers that holds a mesh in one level of detail.
+/// Range of a mesh in the shared buffers, in one level of detail.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshRange {
-    /// Whether its indices have 16 bits: it has 65,536 vertices at most. Others have 32.
+    /// True if the indices have 16 bits (at most 65,536 vertices); otherwise they have 32.
     pub short: bool,
-    /// Whether its vertices have colors.
+    /// True if the vertices have colors.
     pub colored: bool,
-    /// Primitives that its indices make up.
+    /// Primitive topology.
     pub topology: Topology,
-    /// First index of the mesh among those of its kind in [`GpuScene::indices`](super::GpuScene::indices).
+    /// First index of the mesh among 16-bit or 32-bit indices in [`GpuScene::indices`](super::GpuScene::indices).
     pub first_index: u32,
     /// Number of indices.
     pub index_count: u32,
-    /// Number of the mesh's first vertex, added to every index.
+    /// Index of the mesh's first vertex, added to every index.
     pub base_vertex: i32,
 }
 
 impl MeshRange {
-    /// The indices to draw.
+    /// Returns the range of indices to draw.
     #[must_use]
     pub fn indices(&self) -> std::ops::Range<u32> {
         self.first_index..self.first_index + self.index_count
     }
 }
 
-/// Where meshes lie when all are laid one after another: vertices together, indices of 32 bits apart from those of 16, those of levels
-/// behind those of all meshes, so that it does not depend on levels where meshes lie.
+/// Layout of the mesh buffers: vertices, then 32-bit, 16-bit and LOD indices. Levels of detail do not change the
+/// ranges of meshes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MeshRanges(Vec<Vec<MeshRange>>);
 
@@ -36,7 +36,7 @@ impl MeshRanges {
     pub fn new(meshes: &[Mesh]) -> Self {
         let mut base_vertex = 0;
         let whole = |mesh: &Mesh| {
-            // Half the bytes where 16 bits are enough.
+            // 16-bit indices need half the memory.
             let (short, colored) = (mesh.vertex_count() <= 1 << 16, !mesh.colors.is_empty());
             let own = MeshRange { short, colored, topology: mesh.topology, base_vertex, ..MeshRange::default() };
             base_vertex += mesh.vertex_count() as i32;
@@ -53,17 +53,17 @@ impl MeshRanges {
         own
     }
 
-    /// A mesh in a level, 0 for the mesh itself; in the coarsest where it has fewer.
+    /// Returns the range of a mesh in a level of detail; 0 is the mesh itself. Clamps to the coarsest level.
     ///
     /// # Panics
-    /// Where there is no such mesh.
+    /// Panics if the mesh does not exist.
     pub fn of(&self, mesh: MeshId, level: u8) -> MeshRange {
         let own = &self.0[mesh.index()];
         own[usize::from(level).min(own.len() - 1)]
     }
 }
 
-/// All indices in the order in which they lie: mesh, level, and indices.
+/// Returns all indices in buffer order: mesh, level, and indices.
 pub(super) fn indices_of(meshes: &[Mesh]) -> impl Iterator<Item = (usize, usize, &[u32])> {
     let whole = meshes.iter().enumerate().map(|(number, mesh)| (number, 0, mesh.indices.as_slice()));
     let levels = meshes.iter().enumerate().flat_map(|(number, mesh)| {

@@ -1,4 +1,4 @@
-//! A scene's resources on one device.
+//! Buffers and textures of a scene on a device.
 
 use std::borrow::Cow;
 use std::num::NonZeroU64;
@@ -17,37 +17,37 @@ use super::mesh_range::{MeshRange, MeshRanges};
 use super::stencil::stencil_state;
 use super::textures::{Images, MaterialTextures};
 
-/// A scene's resources on one device. Dropping it frees them once no submitted work needs them.
+/// Buffers and textures of a scene on a device. Dropping it frees them once no submitted work needs them.
 #[derive(Debug)]
 pub struct GpuScene {
-    /// Vertex buffer of `layout::VertexPosition`, all meshes.
+    /// Vertex buffer of `layout::VertexPosition` for all meshes.
     pub positions: wgpu::Buffer,
-    /// Vertex buffer of `layout::VertexAttributes`, all meshes.
+    /// Vertex buffer of `layout::VertexAttributes` for all meshes.
     pub attributes: wgpu::Buffer,
-    /// Indices of all meshes: those of 32 bits, and behind them those of 16 ([`MeshRange::short`]).
+    /// Indices of all meshes: 32-bit indices, then 16-bit ones ([`MeshRange::short`]).
     pub indices: wgpu::Buffer,
-    /// Where those of 16 bits begin, in bytes.
+    /// Offset of the 16-bit indices in bytes.
     pub short_indices_at: u64,
     /// `layout::MaterialUniforms` of all materials, `material_stride_bytes` apart.
     pub materials: wgpu::Buffer,
-    /// From one material to the next; a multiple of the device's offset alignment.
+    /// Distance between materials in bytes; a multiple of the device's offset alignment.
     pub material_stride_bytes: u64,
-    /// `layout::MaterialUniforms` of all materials, one after another; none where no list of draws is long enough to use it.
+    /// `layout::MaterialUniforms` of all materials as a packed array; `None` if no draw list is long enough to use it.
     pub material_table: Option<wgpu::Buffer>,
-    /// Values that were clamped, a line each.
+    /// One line for each clamped value.
     pub warnings: Vec<String>,
-    /// Bytes of all buffers and textures, as their descriptors say.
+    /// Size of all buffers and textures in bytes, by their descriptors.
     pub size_bytes: u64,
-    /// What drawing each instance takes, by its number.
+    /// View-independent data for drawing each instance, by instance number.
     pub instances: Vec<InstanceDraw>,
-    /// Where vertices were in the frame before; none while no body has moved.
+    /// Vertex positions of the previous frame; `None` until a mesh is deformed.
     pub(super) earlier: Option<wgpu::Buffer>,
     meshes: MeshRanges,
     textures: MaterialTextures,
     surfaces: Vec<Surface>,
 }
 
-/// A material's properties that decide how it is drawn.
+/// Properties of a material that select its pipeline.
 #[derive(Clone, Debug)]
 struct Surface {
     name: String,
@@ -67,24 +67,23 @@ impl Surface {
 }
 
 impl GpuScene {
-    /// Copies `scene` to the device. Returns once the copies are queued; the first submission
-    /// carries them out.
+    /// Uploads `scene`. Returns once the copies are queued; the first submission executes them.
     ///
     /// # Errors
     ///
-    /// When an image or a buffer exceeds the device's limits (the message names file and limit),
-    /// when `progress` asks to stop, or when the device fails.
+    /// Fails if an image or a buffer exceeds a limit of the device (the message names both), `progress` stops the
+    /// work, or the device fails.
     pub fn upload(gpu: &Gpu, scene: &Scene, progress: &mut ProgressFn<'_>) -> Result<Self, UploadError> {
         let images = scene.images.iter().map(Cow::Borrowed).collect();
         Self::with_images(gpu, scene, images, &Memory::unlimited(), progress)
     }
 
-    /// The same for a scene that is not uploaded again: each image loses its texels as soon as they are on the device. What
-    /// mip levels and copies take stays within `memory`, to which the texels are given back.
+    /// Uploads a scene that is not uploaded again. Frees the texels of each image once they are on the device. Mip
+    /// levels and copies use at most `memory`.
     ///
     /// # Errors
     ///
-    /// As [`GpuScene::upload`], and when an image does not fit into the memory.
+    /// Fails as [`GpuScene::upload`] does, and if an image does not fit into the memory.
     pub fn upload_freeing(
         gpu: &Gpu,
         scene: &mut Scene,
@@ -130,93 +129,94 @@ impl GpuScene {
         })
     }
 
-    /// The part of the buffers that holds a mesh in a level of detail, 0 for the mesh itself; the coarsest where it has fewer.
+    /// Returns the range of a mesh in a level of detail; 0 is the mesh itself. Clamps to the coarsest level.
     ///
     /// # Panics
     ///
-    /// For a mesh of another, larger scene.
+    /// Panics if the scene has no such mesh.
     #[must_use]
     pub fn mesh(&self, mesh: MeshId, level: u8) -> MeshRange {
         self.meshes.of(mesh, level)
     }
 
-    /// The lobes that shading a material has to evaluate.
+    /// Returns the lobes of a material.
     ///
     /// # Panics
     ///
-    /// For a material of another, larger scene.
+    /// Panics if the scene has no such material.
     #[must_use]
     pub fn lobes(&self, material: MaterialId) -> Lobes {
         self.surfaces[material.index()].lobes
     }
 
-    /// What a material has, of which its pipelines are made ([`material_traits`]).
+    /// Returns the traits of a material, which select its pipeline ([`material_traits`]).
     ///
     /// # Panics
     ///
-    /// For a material of another, larger scene.
+    /// Panics if the scene has no such material.
     #[must_use]
     pub fn traits(&self, material: MaterialId) -> u32 {
         self.surfaces[material.index()].traits
     }
 
-    /// The stencil state of pipelines that draw a material, and its reference; `None` for one that has none.
+    /// Returns the stencil state and reference of a material; `None` if it has none.
     ///
     /// # Panics
     ///
-    /// For a material of another, larger scene.
+    /// Panics if the scene has no such material.
     #[must_use]
     pub(crate) fn stencil(&self, material: MaterialId) -> Option<&(StencilState, u32)> {
         self.surfaces[material.index()].stencil.as_ref()
     }
 
-    /// Transparency mode of a blended material.
+    /// Returns the transparency mode of a blended material.
     ///
     /// # Panics
     ///
-    /// For a material of another, larger scene.
+    /// Panics if the scene has no such material.
     #[must_use]
     pub fn transparency(&self, material: MaterialId) -> TransparencyMode {
         self.surfaces[material.index()].transparency
     }
 
-    /// Whether back faces of a material are drawn too.
+    /// Returns true if back faces of a material are drawn.
     ///
     /// # Panics
     ///
-    /// For a material of another, larger scene.
+    /// Panics if the scene has no such material.
     #[must_use]
     pub fn is_double_sided(&self, material: MaterialId) -> bool {
         self.traits(material) & 1 << TRAIT_DOUBLE_SIDED != 0
     }
 
-    /// Whether a material can be taken from the [table](Self::material_table): there is one, and it has no textures.
+    /// Returns true if a material can be read from the [table](Self::material_table): the table exists, and the
+    /// material has no textures.
     ///
     /// # Panics
     ///
-    /// For a material of another, larger scene.
+    /// Panics if the scene has no such material.
     #[must_use]
     pub fn is_in_table(&self, material: MaterialId) -> bool {
         self.material_table.is_some() && self.traits(material) & TEXTURE_TRAITS == 0
     }
 
-    /// The name of a material, for messages; may be empty.
+    /// Returns the name of a material, for messages; may be empty.
     ///
     /// # Panics
     ///
-    /// For a material of another, larger scene.
+    /// Panics if the scene has no such material.
     #[must_use]
     pub fn material_name(&self, material: MaterialId) -> &str {
         &self.surfaces[material.index()].name
     }
 
-    /// Writes the factors of a material anew, for what is submitted from then on. Its textures stay, and its lobes must: they
-    /// choose the shader. Views of a scene whose facts or draws depend on a factor (alpha, emission) are the caller's to make
-    /// anew.
+    /// Updates the factors of a material for later submissions. Textures are unchanged, and lobes must not change,
+    /// since they select the shader. Make views again if their draws or feature culling depend on a changed factor
+    /// (alpha, emission).
     ///
     /// # Errors
     ///
-    /// When the material has other lobes than the one that was uploaded, or there was none of that number.
+    /// Fails if the material does not exist, or its lobes change.
     pub fn write_material(&mut self, gpu: &Gpu, id: MaterialId, material: &Material) -> Result<(), UploadError> {
         let surface = self.surfaces.get_mut(id.index());
         let Some(surface) = surface.filter(|surface| surface.lobes == material.lobes()) else {
@@ -234,12 +234,12 @@ impl GpuScene {
         Ok(())
     }
 
-    /// What to bind to a variable of a material, by its index in [`MATERIAL_BINDINGS`](super::MATERIAL_BINDINGS). A material
-    /// without a texture binds a neutral one. `None` beyond the end.
+    /// Returns the binding of a material's variable, by index in [`MATERIAL_BINDINGS`](super::MATERIAL_BINDINGS). A
+    /// missing texture is replaced by a neutral one. `None` beyond the last index.
     ///
     /// # Panics
     ///
-    /// For a material of another, larger scene.
+    /// Panics if the scene has no such material.
     #[must_use]
     pub fn material_binding(&self, material: MaterialId, index: usize) -> Option<Binding> {
         let Some(index) = index.checked_sub(1) else {

@@ -27,17 +27,17 @@ use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 use framegraph_scene::texture::{BlockFormats, Filter, Image, ImageFormat, Sampler, TextureRole, Wrap};
 use framegraph_wgpu::Gpu;
 
-/// The view and sampler of each slot of each material.
+/// View and sampler of each texture slot of each material.
 #[derive(Debug)]
 pub(super) struct MaterialTextures {
     slots: Vec<[(TextureView, wgpu::Sampler); SLOT_COUNT]>,
     size_bytes: u64,
 }
 
-/// The images of a scene, borrowed or owned. An owned one is dropped as soon as all its textures are written.
+/// Borrowed or owned images of a scene. An owned image is dropped once all its textures are written.
 pub(super) type Images<'a> = Vec<Cow<'a, Image>>;
 
-/// An image in one of its roles, until it is worked on.
+/// Image in one role, waiting for upload.
 struct Job<'a> {
     image: usize,
     role: TextureRole,
@@ -45,7 +45,7 @@ struct Job<'a> {
     working_bytes: u64,
 }
 
-/// Returns the block-compressed formats that the device samples: what to load a scene with that is uploaded to it.
+/// Returns the block-compressed formats that the device samples, as load options of a scene.
 #[must_use]
 pub fn block_formats(gpu: &Gpu) -> BlockFormats {
     let features = gpu.device.features();
@@ -56,7 +56,7 @@ pub fn block_formats(gpu: &Gpu) -> BlockFormats {
     }
 }
 
-/// Returns the format of the device for texels in a role.
+/// Returns the texture format for texels in a role.
 fn texture_format(format: ImageFormat, role: TextureRole) -> TextureFormat {
     let is_srgb = match role {
         TextureRole::Color => true,
@@ -78,11 +78,11 @@ pub(super) fn check_format(features: Features, image: &Image) -> Result<(), Uplo
     is_sampled.then_some(()).ok_or_else(|| UploadError::Format { image: image.name.clone(), format: image.format })
 }
 
-/// What is copied to the device before it is waited for: copies take memory until they are carried out.
+/// Number of bytes queued before a wait; queued copies occupy memory until they are executed.
 const QUEUED_BYTES: u64 = 64 << 20;
 
 impl MaterialTextures {
-    /// Uploads every image once for each role in which some texture uses it. Takes no more of `memory` than there is.
+    /// Uploads every image once for each role in which a texture uses it, within `memory`.
     pub fn upload(
         gpu: &Gpu,
         scene: &Scene,
@@ -161,7 +161,7 @@ impl MaterialTextures {
         Ok(Self { slots, size_bytes })
     }
 
-    /// The slots of a material, in the order of `Material::slots`.
+    /// Returns the slots of a material, in the order of `Material::slots`.
     pub fn of_material(&self, material: MaterialId) -> &[(TextureView, wgpu::Sampler); SLOT_COUNT] {
         &self.slots[material.index()]
     }
@@ -171,7 +171,7 @@ impl MaterialTextures {
     }
 }
 
-/// Each image in each role that a texture gives it, once. `shared` says that the device's memory is the machine's.
+/// Returns each image once for each of its roles. `shared` is true if device and host share memory.
 fn jobs<'a>(scene: &Scene, images: Images<'a>, shared: bool) -> Vec<Job<'a>> {
     let images: Vec<_> = images.into_iter().map(Arc::new).collect();
     let mut jobs: Vec<Job<'_>> = Vec::new();
@@ -194,7 +194,7 @@ fn jobs<'a>(scene: &Scene, images: Images<'a>, shared: bool) -> Vec<Job<'a>> {
     jobs
 }
 
-/// An image with its levels, ready to be copied.
+/// Image with its mip levels, ready for upload.
 struct Made<'a, 'm> {
     pixels: Arc<Cow<'a, Image>>,
     levels: Vec<Level>,
@@ -213,7 +213,7 @@ fn made<'a, 'm>(job: &Job<'a>, loan: Result<Loan<'m>, OverBudget>) -> Result<Mad
     Ok(Made { pixels, levels, loan })
 }
 
-/// One texel that leaves the factor as it is.
+/// Returns an image of one texel that leaves the factor unchanged.
 fn neutral_image(role: TextureRole) -> Image {
     let texel = match role {
         TextureRole::Color | TextureRole::Linear => [255; 4],
@@ -222,7 +222,7 @@ fn neutral_image(role: TextureRole) -> Image {
     Image::from_rgba8(format!("neutral {role:?}"), 1, 1, texel.to_vec())
 }
 
-/// Makes the texture of an image and queues the copy of its levels and of those made for it; returns its bytes, too.
+/// Creates the texture of an image and queues the copy of its levels. Returns its size in bytes, too.
 fn write(
     gpu: &Gpu,
     image: &Image,
@@ -244,8 +244,8 @@ fn write(
     Ok((view, all.iter().map(|(.., bytes)| bytes.len() as u64).sum()))
 }
 
-/// A two-dimensional texture of these levels (width, height, bytes), the first one first. `block_bytes` are those of a block,
-/// or of a texel.
+/// Creates a two-dimensional texture of these levels (width, height, bytes), largest first. `block_bytes` is the size
+/// of a block, or of a texel.
 pub(super) fn write_levels<'a>(
     gpu: &Gpu,
     label: &str,
@@ -269,7 +269,7 @@ pub(super) fn write_levels<'a>(
     });
     let (block_width, block_height) = format.block_dimensions();
     for (level, (width, height, bytes)) in levels.enumerate() {
-        // Copies are of whole blocks, which reach beyond small levels.
+        // Copies consist of whole blocks, which may exceed small levels.
         let blocks = (width.div_ceil(block_width), height.div_ceil(block_height));
         gpu.queue.write_texture(
             wgpu::TexelCopyTextureInfo {

@@ -1,10 +1,10 @@
-//! Distances that blended surfaces of a view lie in.
+//! Range of distances of a view's blended surfaces.
 
 use framegraph_scene::{Camera, Renderables};
 use glam::Vec4;
 
-/// Scale and offset that take the binary logarithm of a distance ahead of the eye, in m, to −1…1 over the boxes of these
-/// instances. Boxes reach a little farther, so that nothing lies at the ends.
+/// Returns the scale and offset that map log2 of a distance ahead of the eye in m to −1…1, over the boxes of these
+/// instances. The range has a margin, so that no surface lies at its ends.
 pub(super) fn blended_range(renderables: &Renderables, blended: &[u32], camera: &Camera) -> Vec4 {
     let forward = camera.forward();
     let nearest = camera.projection.near_m().max(1e-4);
@@ -27,7 +27,7 @@ mod tests {
     use framegraph_scene::{Projection, Scene};
     use glam::DVec3;
 
-    /// Without any blended surface, and with one behind the eye, the range is one that a shader can use.
+    /// The range is finite without blended surfaces, and with one behind the eye.
     #[test]
     fn a_range_of_nothing_is_finite() {
         let projection = Projection::perspective(0.6, 0.1);

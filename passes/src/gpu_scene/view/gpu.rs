@@ -1,7 +1,7 @@
-//! The views of a frame on the GPU.
+//! Views of a frame on the GPU.
 //!
-//! Each view has buffers of its own for what depends on its eye, and for what it draws; meshes, materials and textures are the
-//! scene's and shared. How instances are turned and scaled is uploaded once, and again where it changed.
+//! Each view has its own buffers for eye-relative data and draw lists. All views share the meshes, materials and
+//! textures of the scene. Rotation and scale of instances are uploaded once, and again after a change.
 
 use super::CameraView;
 use crate::error::PassError;
@@ -17,36 +17,36 @@ use framegraph_wgpu::{DeviceError, Gpu};
 use glam::DVec2;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages};
 
-/// Which of a frame's views a pass draws.
+/// Index of a view of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ViewId(pub u32);
 
 impl ViewId {
-    /// The first view, which every world of a scene has.
+    /// First view, which every world has.
     pub const MAIN: Self = Self(0);
 }
 
 /// A view with its buffers.
 #[derive(Debug)]
 pub struct GpuView {
-    /// The view.
+    /// View on the CPU.
     pub view: CameraView,
-    /// `layout::MotionUniforms` of each instance, where any moves.
+    /// `layout::MotionUniforms` of each instance, if any instance moves.
     pub motions: Buffer,
     /// `layout::LightUniforms` of the punctual lights.
     pub lights: Buffer,
-    /// The words of the lists of lights.
+    /// Light lists by froxel.
     pub light_lists: Buffer,
-    /// `layout::ShadowMapUniforms` of the shadow maps of local lights.
+    /// `layout::ShadowMapUniforms` of the shadow maps of punctual lights.
     pub local_maps: Buffer,
     /// `layout::ObjectUniforms` of each instance, by its number; and those that were uploaded.
     objects: Buffer,
     uploaded: Placements,
-    /// Where the zero point of each instance's mesh is, relative to the eye.
+    /// Origin of each instance's mesh, relative to the eye.
     origins: Buffer,
-    /// Instances as draws take them: `layout::ObjectAttributes` where objects are streamed, else their numbers.
+    /// Instance stream: `layout::ObjectAttributes` if objects are streamed, otherwise instance numbers.
     instances: Buffer,
-    /// Those of `instances` that are objects; kept for its memory.
+    /// Streamed objects; kept to reuse the allocation.
     streamed: Vec<ObjectAttributes>,
     /// Arguments of indirect draws.
     arguments: Buffer,
@@ -111,7 +111,7 @@ impl GpuView {
         self.uploaded = placements.clone();
     }
 
-    /// Where its draws take instances from.
+    /// Returns the source that the view's instances are drawn from.
     pub fn instances<'a>(&'a self, scene: &'a GpuScene) -> InstanceSource<'a> {
         let Self { objects, origins, instances, arguments, view, .. } = self;
         let instances = match view.streams_objects {
@@ -121,10 +121,10 @@ impl GpuView {
         InstanceSource { scene, instances, arguments, stencil: false }
     }
 
-    /// The view's shadow maps for a frame that declares so many layers of them.
+    /// Returns the view's shadow maps, for a frame with `declared` layers of them.
     ///
     /// # Errors
-    /// When the view's maps are made for another number of layers.
+    /// Fails if the maps have another number of layers.
     pub fn shadows(&self, declared: u16) -> Result<&ViewShadows, PassError> {
         let shadows = self.view.shadows.as_ref();
         let layers = shadows.map_or(0, |shadows| shadows.settings.layers());
@@ -133,15 +133,15 @@ impl GpuView {
     }
 }
 
-/// The views of a frame. Kept from frame to frame; [`Views::set`] replaces one.
+/// Views of a frame, kept across frames. [`Views::set`] replaces one.
 #[derive(Debug, Default)]
 pub struct Views(Vec<GpuView>);
 
 impl Views {
-    /// Uploads views; the first is [`ViewId::MAIN`].
+    /// Uploads views. The first is [`ViewId::MAIN`].
     ///
     /// # Errors
-    /// When the device refuses a buffer.
+    /// Fails if the device cannot create a buffer.
     pub fn new(gpu: &Gpu, views: impl IntoIterator<Item = CameraView>) -> Result<Self, DeviceError> {
         gpu.guard("buffers of views", || {
             let view = |(number, view)| GpuView::new(gpu, ViewId(number), view);
@@ -149,10 +149,10 @@ impl Views {
         })
     }
 
-    /// Replaces a view. Its buffers are reused while they are large enough.
+    /// Replaces a view. Reuses buffers that are large enough.
     ///
     /// # Errors
-    /// When there is no such view.
+    /// Fails if the view does not exist.
     pub fn set(&mut self, gpu: &Gpu, id: ViewId, view: CameraView) -> Result<(), PassError> {
         let count = self.0.len();
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
@@ -161,11 +161,11 @@ impl Views {
         Ok(())
     }
 
-    /// The next frame of a view that stands still in a scene that does: seen after itself, through the places of its pixels
-    /// that are `jitter_px` away from their middles. No buffer changes.
+    /// Advances an unchanged view of an unchanged scene to the next frame, with the jitter `jitter_px`. Uploads no
+    /// buffer.
     ///
     /// # Errors
-    /// When there is no such view.
+    /// Fails if the view does not exist.
     pub fn again(&mut self, id: ViewId, jitter_px: DVec2) -> Result<(), PassError> {
         let count = self.0.len();
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;
@@ -176,23 +176,22 @@ impl Views {
         Ok(())
     }
 
-    /// The view of that number.
+    /// Returns a view.
     ///
     /// # Errors
-    /// When there is no such view.
+    /// Fails if the view does not exist.
     pub fn get(&self, id: ViewId) -> Result<&GpuView, PassError> {
         self.0.get(id.0 as usize).ok_or(PassError::NoView { view: id.0, count: self.0.len() })
     }
 }
 
-/// A buffer for so many bytes; never empty, since an empty one cannot be bound.
+/// Creates a buffer of at least `bytes` bytes. Never empty, since empty buffers cannot be bound.
 fn buffer(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: u64) -> Buffer {
     let (size, usage) = (bytes.max(256), usage | BufferUsages::COPY_DST);
     gpu.device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
 }
 
-/// Replaces a buffer that is too small for so many bytes; whether it did. One that grows again and again is replaced less
-/// and less often.
+/// Replaces a buffer smaller than `bytes`, and returns true if it did. Growth is geometric.
 fn fit(gpu: &Gpu, own: &mut Buffer, label: &str, usage: BufferUsages, bytes: u64) -> bool {
     let is_small = bytes > own.size();
     if is_small {

@@ -1,17 +1,17 @@
-//! In which level of detail instances are drawn: one for all that a frame draws of an instance, in pictures and in shadow maps, since
-//! it would shadow itself where two levels are apart.
+//! Level of detail of each instance. Pictures and shadow maps use the same level, since different levels would cause
+//! self-shadowing.
 
 use super::ViewSettings;
 use framegraph_scene::camera::PixelSize;
 use framegraph_scene::{DrawLists, Renderables};
 
 impl ViewSettings {
-    /// Levels by the numbers of instances before anything limits them; empty where all meshes are drawn whole.
+    /// Returns unlimited levels by instance number; empty if full meshes are drawn.
     pub(crate) fn unlimited_levels(&self, of: &Renderables) -> Vec<u8> {
         if self.lod_error_px > 0.0 { of.levels().unlimited() } else { Vec::new() }
     }
 
-    /// Limits them to what the pixels of this view allow of what it sees.
+    /// Limits the levels to the geometric error that this view allows for visible instances.
     pub(crate) fn limit_levels(&self, of: &Renderables, visible: &DrawLists, levels: &mut [u8]) {
         let DrawLists { opaque, mask, transmit, blend, .. } = visible;
         let pixel = PixelSize::new(&self.camera, self.size_px);

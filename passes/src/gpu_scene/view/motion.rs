@@ -1,10 +1,10 @@
-//! Where instances are and were in clip space.
+//! Current and previous transforms of instances to clip space.
 
 use crate::gpu_scene::prepared::Placements;
 use framegraph_shaders::layout::MotionUniforms;
 use glam::{DMat4, DVec3};
 
-/// From where instances are seen in one frame, and where they stand.
+/// Camera and transforms of one frame.
 pub(super) struct Moment<'a> {
     pub(super) clip_from_world: DMat4,
     pub(super) eye: DVec3,
@@ -12,7 +12,7 @@ pub(super) struct Moment<'a> {
 }
 
 impl Moment<'_> {
-    /// Where instances are now and were `before`, joined in f64; empty where none has moved.
+    /// Returns current and previous transforms, multiplied in f64; empty if no instance moved.
     pub(super) fn motions_since(&self, before: &Self) -> Vec<MotionUniforms> {
         let mut motions = Vec::new();
         for (number, here, there) in self.placements.moved_since(before.placements) {
@@ -22,7 +22,7 @@ impl Moment<'_> {
         motions
     }
 
-    /// Puts where these instances are now and were `before` into `motions`, whether they have moved or not.
+    /// Writes current and previous transforms of these instances to `motions`, moved or not.
     pub(super) fn motions_of(
         &self,
         instances: impl Iterator<Item = usize>,
@@ -38,7 +38,7 @@ impl Moment<'_> {
         motions
     }
 
-    /// Where an instance is now and was `before`, from where it is and was in the world.
+    /// Returns the transforms of one instance from its current and previous model-to-world matrices.
     fn motion(&self, before: &Self, here: &DMat4, there: &DMat4) -> MotionUniforms {
         let clip = |moment: &Self, placed: &DMat4| {
             (moment.clip_from_world * DMat4::from_translation(-moment.eye) * *placed).as_mat4()

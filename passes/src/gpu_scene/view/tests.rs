@@ -1,4 +1,4 @@
-//! Light of views, and that threads change nothing.
+//! Light of views, and equality of views made on several threads.
 
 use super::*;
 use crate::light::ibl::IblSettings;
@@ -7,7 +7,7 @@ use framegraph_scene::environment::ShBands;
 use framegraph_scene::{Environment, progress};
 use framegraph_wgpu::Gpu;
 
-/// Irradiance / π of an even light is its radiance, times intensity and exposure; bands that were left out are zero.
+/// Irradiance / π of uniform light is its radiance times intensity and exposure. Omitted bands are zero.
 #[test]
 fn ambient_light_is_scaled_and_padded() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Gpu::noop()?;
@@ -38,8 +38,7 @@ fn ambient_light_is_scaled_and_padded() -> Result<(), Box<dyn std::error::Error>
     Ok(())
 }
 
-/// Culling, sorting, placing and lights on several threads: the same view as on one, of a scene that is large enough for all of
-/// them to be asked.
+/// Views made on several threads equal those made on one, for a scene large enough to use all threads.
 #[test]
 fn views_made_on_several_threads_are_the_same() -> Result<(), Box<dyn std::error::Error>> {
     use framegraph_scene::geometry::cuboid;
@@ -85,8 +84,8 @@ fn views_made_on_several_threads_are_the_same() -> Result<(), Box<dyn std::error
     Ok(())
 }
 
-/// The farther the eye, the coarser; the same in the picture and in all shadow maps, of all views that share them; a map of a lamp that
-/// holds another level is another map.
+/// Levels of detail get coarser with distance. The picture and all shadow maps of all views that share them use the
+/// same level. A change of level invalidates a cached map of a punctual light.
 #[test]
 fn an_instance_has_one_level_of_detail_in_all_that_is_drawn() -> Result<(), Box<dyn std::error::Error>> {
     use framegraph_scene::geometry::sphere;
@@ -123,7 +122,7 @@ fn an_instance_has_one_level_of_detail_in_all_that_is_drawn() -> Result<(), Box<
         visible_layers: 1,
     };
     let view = |settings: &ViewSettings| CameraView::new(&scene, &light, &Background::None, settings);
-    // The level of the ball, which every draw of it has.
+    // Level of the ball, the same in every draw.
     let level = |view: &CameraView| {
         let lists = view.draws.depth.iter().chain(&view.draws.surfaces).chain(view.draws.casters.iter().flatten());
         let all: Vec<u8> = lists.flatten().map(|batch| batch.level).collect();
@@ -137,11 +136,11 @@ fn an_instance_has_one_level_of_detail_in_all_that_is_drawn() -> Result<(), Box<
     assert!(level(&view(&seen(27.0, 1.0, 4096))) < found[3], "texels of maps are as small as that");
     let together = CameraView::together(&scene, &light, &Background::None, &[coarse(27.0), coarse(1.0), coarse(9.0)]);
     assert_eq!(together.iter().map(level).collect::<Vec<_>>(), [found[0]; 3]);
-    // One of which may be drawn coarser than the one whose maps they are.
+    // The second view alone would allow a coarser level.
     let together = CameraView::together(&scene, &light, &Background::None, &[seen(27.0, 1.0, 64), seen(27.0, 4.0, 64)]);
     let levels: Vec<u8> = together.iter().map(level).collect();
     assert!(levels[0] == levels[1] && level(&view(&seen(27.0, 4.0, 64))) > levels[0], "{levels:?}");
-    // Of the lamp's maps, which do not depend on the eye while that is near.
+    // Keys of the maps of a punctual light, which do not depend on the eye.
     let keys = |far_m, lod_error_px| {
         let shadows = view(&seen(far_m, lod_error_px, 64)).shadows;
         shadows.map_or(Vec::new(), |shadows| shadows.keys[shadows.cascades..].to_vec())

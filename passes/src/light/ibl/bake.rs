@@ -1,4 +1,4 @@
-//! Making image-based light: from the cache, or computed and kept there.
+//! Prefiltering of environments, with a cache.
 
 use framegraph_scene::color::luminance_from_rec709;
 use framegraph_scene::environment::{Environment, EquirectMap, Sh, cleaned};
@@ -16,21 +16,20 @@ use super::settings::{EnvironmentFormat, IblSettings};
 use super::texture::{CubeShape, cube_format, cube_view, write_cube};
 
 impl ImageLight {
-    /// Makes light of `environment`, or finds it in `cache`. The cube of even light has five levels of 64 texels, whatever
-    /// `settings` ask for. Light that the environment came with
-    /// ([`Environment::filtered`]) is taken as it is: its size and levels, and its bands, stand in place of those that
-    /// `settings` ask for.
+    /// Prefilters `environment`, or loads the result from `cache`. Uniform light has a cube of 64 texels and five
+    /// levels, whatever `settings` request. If the environment comes with prefiltered light
+    /// ([`Environment::filtered`]), its size, levels and bands replace those of `settings`.
     ///
-    /// Texels that are negative, infinite or NaN are clamped as by [`Environment::load`] and counted in
-    /// [`warnings`](Self::warnings); those of a loaded environment already are.
+    /// Negative, infinite and NaN texels are clamped as in [`Environment::load`] and counted in
+    /// [`warnings`](Self::warnings). Texels of a loaded environment are already clamped.
     ///
-    /// Reports each slice of the work as [`Stage::Lighting`](framegraph_scene::Stage::Lighting) and stops where
-    /// `progress` asks to; nothing is written to the cache then.
+    /// Reports each slice of the work as [`Stage::Lighting`](framegraph_scene::Stage::Lighting). `progress` may stop
+    /// the work, and then nothing is written to the cache.
     ///
     /// # Errors
     ///
-    /// When a setting is out of range (the message names it), when the work is interrupted, or when the
-    /// device fails. A cache that cannot be read or written is a warning.
+    /// Fails if a setting is out of range, the work is interrupted, or the device fails. A cache that cannot be read
+    /// or written causes a warning.
     pub fn new(
         gpu: &Gpu,
         environment: &Environment,
@@ -51,7 +50,7 @@ impl ImageLight {
             let cube = write_cube(gpu, &environment.name, &shape, &light.levels)?;
             return Ok(Self::of(environment, settings, &shape, &light, &cube, (false, warnings)));
         }
-        // All texels of even light are the same, so the smallest cube holds it.
+        // Every texel of uniform light is equal, so the smallest cube suffices.
         let even = IblSettings { cube_texels: 64, levels: 5, ..*settings };
         let settings = if map.is_even() { &even } else { settings };
         let shape = CubeShape {
@@ -92,7 +91,7 @@ impl ImageLight {
         Ok(Self::of(environment, settings, &shape, &light, &cube, (from_cache, warnings)))
     }
 
-    /// The light of an entry, whose cube is on the device.
+    /// Returns the light of a cache entry whose cube is on the device.
     fn of(
         environment: &Environment,
         settings: &IblSettings,
@@ -122,7 +121,7 @@ impl ImageLight {
     }
 }
 
-/// All that decides what the cube and the coefficients are. The window is applied after the cache.
+/// Returns the key of everything that determines the cube and the coefficients. The window is applied after the cache.
 fn key(map: &EquirectMap, settings: &IblSettings, shape: &CubeShape) -> Key {
     let mut key = Key::of("image light", "pass/ibl.wgsl");
     key.add(&[map.width(), map.height(), settings.cube_texels, settings.levels, settings.bands.count() as u32]);
@@ -140,7 +139,7 @@ mod tests {
     use framegraph::Format;
     use framegraph_scene::environment::ShBands;
 
-    /// Each of what an entry depends on makes another key; the window, which is applied afterwards, does not.
+    /// Every input of an entry changes its key, except for the window, which is applied afterwards.
     #[test]
     fn every_part_of_the_key_counts() {
         let map =

@@ -1,8 +1,8 @@
-//! A cache on disk for computed light. Its keys are hashes of all that the light was computed from.
+//! Disk cache of prefiltered light.
 //!
-//! An entry's name is a hash of all that decides its content: texels, settings, tables, the text of the
-//! shader and of the library it imports. So an entry never goes stale; one that is not asked for any more
-//! stays until its folder is emptied, which is safe at any time.
+//! The name of an entry is a hash of everything that determines its content: texels, settings, tables, and the text of
+//! the shader and of its library. An entry is therefore never stale. Unused entries stay until the folder is emptied,
+//! which is safe at any time.
 //!
 //! ```text
 //! 0   8  "fg-cache"           24  16  key
@@ -11,9 +11,8 @@
 //! 16  8  zero                 56   …  payload
 //! ```
 //!
-//! Entries are written beside their place and renamed into it. A file that is cut short, damaged, or of
-//! another version gives a warning and is written anew; a folder that cannot be written gives a warning. Neither
-//! is an error.
+//! Entries are written to a temporary file and renamed. A truncated, damaged or outdated file causes a warning and is
+//! rewritten. A folder that cannot be written causes a warning. Neither is an error.
 
 use std::ffi::OsString;
 use std::hash::Hasher;
@@ -32,31 +31,30 @@ use framegraph_scene::error::one_line;
 use framegraph_shaders::{Source, library};
 use framegraph_wgpu::Gpu;
 
-/// Version of the file's layout. What its payload means is part of the key.
+/// Version of the file layout. The meaning of the payload is part of the key.
 const VERSION: u32 = 1;
 const MAGIC: &[u8; 8] = b"fg-cache";
 const HEADER_BYTES: usize = 56;
 const CHECKSUM: std::ops::Range<usize> = 48..56;
 
-/// A folder in which computed light is kept from one run of a program to the next, or none.
+/// Folder that keeps prefiltered light between runs of a program, or no folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cache {
     folder: Option<PathBuf>,
-    /// A folder was wanted, but the environment names none: each use warns of it.
+    /// True if a folder was requested but the environment names none, which each use reports as a warning.
     homeless: bool,
 }
 
 impl Default for Cache {
-    /// [`Cache::user`].
+    /// Returns [`Cache::user`].
     fn default() -> Self {
         Self::user()
     }
 }
 
 impl Cache {
-    /// The user's folder for such files: `framegraph/ibl` in `XDG_CACHE_HOME`, else in `.cache` of the
-    /// home folder, else (on Windows) in `LOCALAPPDATA`. Where there is none, nothing is kept and each
-    /// use gives a warning.
+    /// Returns the user's cache: `framegraph/ibl` in `XDG_CACHE_HOME`, else in `.cache` of the home folder, else (on
+    /// Windows) in `LOCALAPPDATA`. If none exists, nothing is kept, and each use causes a warning.
     #[must_use]
     pub fn user() -> Self {
         let variable = |name: &str| std::env::var_os(name);
@@ -66,8 +64,8 @@ impl Cache {
         }
     }
 
-    /// What the variable `FRAMEGRAPH_LIGHT_CACHE` says: `off` for [`Cache::off`], else a folder; without
-    /// it [`Cache::user`].
+    /// Returns the cache that the variable `FRAMEGRAPH_LIGHT_CACHE` selects: `off` for [`Cache::off`], otherwise a
+    /// folder. If it is not set, returns [`Cache::user`].
     #[must_use]
     pub fn from_env() -> Self {
         Self::chosen(std::env::var_os("FRAMEGRAPH_LIGHT_CACHE"))
@@ -81,25 +79,25 @@ impl Cache {
         }
     }
 
-    /// This folder, which is made when first needed.
+    /// Returns a cache in this folder, which is created when first needed.
     #[must_use]
     pub fn at(folder: impl Into<PathBuf>) -> Self {
         Self { folder: Some(folder.into()), homeless: false }
     }
 
-    /// No cache: nothing is read or written.
+    /// Returns a disabled cache: nothing is read or written.
     #[must_use]
     pub fn off() -> Self {
         Self { folder: None, homeless: false }
     }
 
-    /// The folder, if there is one.
+    /// Returns the folder, if any.
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
 
-    /// Whether what `gpu` computes is kept: not without a folder, and not what a device that draws nothing leaves.
+    /// Returns true if results of `gpu` are kept: there is a folder, and the device draws.
     pub(super) fn keeps_results_of(&self, gpu: &Gpu) -> bool {
         self.folder.is_some() && gpu.info().backend != wgpu::Backend::Noop
     }
@@ -108,8 +106,7 @@ impl Cache {
         self.folder.as_ref().map(|folder| folder.join(format!("{:032x}.light", key.finish())))
     }
 
-    /// What `decode` makes of the payload kept under `key`, if there is one and it is sound. Anything wrong with it is a
-    /// line of `warnings`.
+    /// Decodes the payload of `key`, if the entry exists and is valid. Problems are added to `warnings`.
     pub(super) fn load<T>(
         &self,
         key: Key,
@@ -133,7 +130,7 @@ impl Cache {
         decoded.map_err(|e| warnings.push(format!("{}: {e}; the cache entry is computed anew", shown(&path)))).ok()
     }
 
-    /// Keeps a payload under `key`. Failing to is a line of `warnings`.
+    /// Stores a payload under `key`. A failure is added to `warnings`.
     pub(super) fn store(&self, key: Key, kind: u32, payload: &[u8], warnings: &mut Vec<String>) {
         let (Some(folder), Some(path)) = (&self.folder, self.path(key)) else { return };
         if let Err(error) = write_whole(&path, &file(payload, key.finish(), kind)) {
@@ -146,7 +143,7 @@ impl Cache {
     }
 }
 
-/// The bytes of a regular file; nothing else is opened.
+/// Reads a regular file; fails for anything else.
 fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     if std::fs::metadata(path)?.is_file() {
         std::fs::read(path)
@@ -159,9 +156,9 @@ fn shown(path: &Path) -> String {
     one_line(&path.display().to_string())
 }
 
-/// See [`Cache::user`]; `variable` is the environment.
+/// Returns the folder of [`Cache::user`]; `variable` reads the environment.
 fn user_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
-    // The XDG specification has relative paths ignored.
+    // The XDG specification ignores relative paths.
     let absolute = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let base = absolute("XDG_CACHE_HOME")
         .or_else(|| absolute("HOME").map(|home| home.join(".cache")))
@@ -169,7 +166,7 @@ fn user_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     Some(base.join("framegraph").join("ibl"))
 }
 
-/// The file of an entry.
+/// Returns the file contents of an entry.
 fn file(payload: &[u8], key: u128, kind: u32) -> Vec<u8> {
     let mut file = Vec::with_capacity(HEADER_BYTES + payload.len());
     file.extend(MAGIC);
@@ -185,7 +182,7 @@ fn file(payload: &[u8], key: u128, kind: u32) -> Vec<u8> {
     file
 }
 
-/// The payload of a file that must hold this entry.
+/// Returns the payload of a file, which must be of this entry.
 fn payload(file: &[u8], key: u128, kind: u32) -> Result<&[u8], EntryError> {
     let (header, payload) = file.split_at_checked(HEADER_BYTES).ok_or(EntryError::CutShort)?;
     if header[..8] != *MAGIC {
@@ -206,8 +203,8 @@ fn payload(file: &[u8], key: u128, kind: u32) -> Result<&[u8], EntryError> {
     Ok(payload)
 }
 
-/// Reads bytes as an entry of the cache, and, whatever their header says, as the payload of a light and of a table of a few
-/// texels: neither may panic. Returns whether any of that is sound. For fuzzing.
+/// Decodes bytes as a cache entry, and as the payload of light and of a small table, ignoring the header. Returns true
+/// if any of them is valid. Never panics; for fuzzing.
 #[doc(hidden)]
 #[must_use]
 pub fn examine(bytes: &[u8]) -> bool {
@@ -220,7 +217,7 @@ pub fn examine(bytes: &[u8]) -> bool {
     whole | bytes.get(HEADER_BYTES..).is_some_and(of_payload)
 }
 
-/// SipHash-1-3 of all but the checksum's own place.
+/// Returns SipHash-1-3 of everything except the checksum.
 fn checksum(file: &[u8]) -> u64 {
     let mut hasher = SipHasher13::new();
     hasher.write(&file[..CHECKSUM.start]);
@@ -228,7 +225,7 @@ fn checksum(file: &[u8]) -> u64 {
     hasher.finish()
 }
 
-/// Writes beside the target under a name of its own, then puts it in its place.
+/// Writes a temporary file, then renames it to the target.
 fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     static WRITES: AtomicU32 = AtomicU32::new(0);
     let folder = path.parent().unwrap_or(Path::new("."));
@@ -249,10 +246,10 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-/// How long an entry takes to be written at most; what is older was left by a program that was killed.
+/// Maximum time to write an entry. Older temporary files were left by killed programs.
 const STALE: Duration = Duration::from_secs(600);
 
-/// Removes what killed programs left behind. What cannot be removed stays.
+/// Removes temporary files of killed programs, as far as possible.
 fn sweep(folder: &Path) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let is_part = entry.path().extension().is_some_and(|ending| ending == "part");
@@ -263,13 +260,13 @@ fn sweep(folder: &Path) {
     }
 }
 
-/// The name of an entry in the making: 128 bits of SipHash over all that decides its content.
+/// Key of a cache entry: 128 bits of SipHash over everything that determines its content.
 #[derive(Clone, Copy)]
 pub(super) struct Key(SipHasher13x128);
 
 impl Key {
-    /// Of an entry that an embedded pass makes: its text and that of the whole library that it may import from count. `what`
-    /// keeps kinds of entries apart.
+    /// Starts the key of an entry that an embedded pass computes, with the text of the pass and of the whole library.
+    /// `what` separates kinds of entries.
     pub fn of(what: &str, pass: &str) -> Self {
         let read = |source: &Source<'static>| library::in_use(source.path).map(|wgsl| Source { wgsl, ..*source });
         Self::made_by(what, pass, library::SOURCES.iter().filter_map(read))
@@ -285,7 +282,7 @@ impl Key {
         key
     }
 
-    /// Adds numbers; how many is part of it.
+    /// Adds numbers and their count.
     pub fn add<T: bytemuck::NoUninit>(&mut self, numbers: &[T]) {
         let bytes: &[u8] = bytemuck::cast_slice(numbers);
         self.0.write(&(bytes.len() as u64).to_le_bytes());

@@ -1,33 +1,33 @@
-//! Why light could not be made of an environment.
+//! Errors of prefiltering an environment.
 
 use crate::error::PassError;
 use framegraph::{CompileErrors, DeclareError};
 use framegraph_scene::SceneError;
 use framegraph_wgpu::{DeviceError, ExecuteError, ReadbackError};
 
-/// Why light could not be made of an environment.
+/// Error of prefiltering an environment.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum IblError {
     /// A setting is out of range, or the work was interrupted.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A shader is wrong.
+    /// A shader is invalid.
     #[error(transparent)]
     Shader(#[from] PassError),
-    /// A pass of the work was refused when it was declared.
+    /// A pass could not be declared.
     #[error(transparent)]
     Declare(#[from] DeclareError),
-    /// The graph of a slice of the work does not compile.
+    /// The graph of a slice does not compile.
     #[error(transparent)]
     Compile(#[from] CompileErrors),
-    /// A slice of the work could not be executed.
+    /// A slice could not be executed.
     #[error(transparent)]
     Execute(ExecuteError),
-    /// The device refused, ran out of memory, or was lost.
+    /// The device failed, ran out of memory, or was lost.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// What was computed could not be read back for the cache.
+    /// A result could not be read back for the cache.
     #[error(transparent)]
     Readback(#[from] ReadbackError),
 }

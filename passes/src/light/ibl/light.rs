@@ -1,68 +1,67 @@
-//! Image-based light: what an environment adds to every surface, ready for shaders to look up.
+//! Prefiltered environment: the contribution of an environment to shading.
 
 use framegraph_scene::environment::ShBands;
 use framegraph_scene::light::Light;
 use glam::{Vec3, Vec4};
 use wgpu::{TextureFormat, TextureView};
 
-/// Coefficients that five bands of irradiance leave: 9 + 0 + 9.
+/// Number of coefficients for five bands of irradiance: 9 + 0 + 9.
 pub const IRRADIANCE_COEFFICIENTS: usize = 18;
 
-/// An environment as light, on one device.
+/// Prefiltered environment on a device.
 ///
-/// To shade with it: irradiance/π is `irradiance_sh5(irradiance, n)` (or `sh2`, `sh` with the first 4 or
-/// 9, see [`bands`](Self::bands)) of `wgsl/lib/sh.wgsl`; the radiance that a lobe gathers is the specular
-/// cube at `specular_lod(roughness, roughness_one_lod)` of `wgsl/lib/image_light.wgsl` times
-/// [`texel_nits`](Self::texel_nits). Both are in nits for an environment in nits: multiply by intensity
-/// and exposure.
+/// Irradiance/π is `irradiance_sh5(irradiance, n)` of `wgsl/lib/sh.wgsl`. For fewer [`bands`](Self::bands), use `sh2`
+/// or `sh` with the first 4 or 9 coefficients. Prefiltered radiance is the specular cube at `specular_lod(roughness,
+/// roughness_one_lod)` of `wgsl/lib/image_light.wgsl`, times [`texel_nits`](Self::texel_nits). Both are in nits for an
+/// environment in nits. Multiply them by intensity and exposure.
 #[derive(Debug)]
 pub struct ImageLight {
-    /// The environment's name, for messages.
+    /// Name of the environment, for messages.
     pub name: String,
-    /// Irradiance / π as factors of the polynomials of `irradiance_sh5`: bands 0 to 2 in the first nine,
-    /// band 4 in the others; xyz is linear Rec.709 in nits, w is 0. What the chosen bands leave out is
-    /// zero. In this layout an `array<vec4<f32>, 18>` of a uniform buffer holds them.
+    /// Irradiance / π as coefficients of the polynomials of `irradiance_sh5`: bands 0 to 2 in the first nine, band 4
+    /// in the others. xyz is linear Rec.709 in nits, w is 0. Omitted bands are zero. An `array<vec4<f32>, 18>` in a
+    /// uniform buffer has this layout.
     pub irradiance: [Vec4; IRRADIANCE_COEFFICIENTS],
-    /// How many bands are in there: the shader needs to evaluate no more.
+    /// Number of bands that a shader needs to evaluate.
     pub bands: ShBands,
-    /// Prefiltered radiance in units of [`texel_nits`](Self::texel_nits), a cube view of all levels. To
-    /// be sampled trilinearly.
+    /// Cube view of all levels of prefiltered radiance, in units of [`texel_nits`](Self::texel_nits). Sample it
+    /// trilinearly.
     pub specular: TextureView,
     /// Format of the cube's texels: `Rg11b10Ufloat` or `Rgba16Float`, or `Rgba8Unorm` for RGBM ([`is_rgbm`](Self::is_rgbm)).
     pub format: TextureFormat,
     /// Width and height of level 0 of the cube in texels.
     pub cube_texels: u32,
-    /// Levels of the cube: the first is a mirror, the last roughness 1.
+    /// Number of levels of the cube, from a mirror to roughness 1.
     pub level_count: u32,
-    /// The number of the last level, as `specular_lod` wants it.
+    /// Index of the last level, as an argument of `specular_lod`.
     pub roughness_one_lod: f32,
-    /// Radiance in nits of a texel that holds 1: a power of two, chosen so that the brightest texel is
-    /// within the format.
+    /// Radiance in nits of a texel with value 1: a power of two that brings the brightest texel into the range of the
+    /// format.
     pub texel_nits: f32,
-    /// Mean luminance over all directions, the sun apart, in nits.
+    /// Mean luminance over all directions, without the sun, in nits.
     pub luminance_nits: f32,
-    /// The unit vector toward where most light comes from; `None` for even light.
+    /// Unit vector toward the dominant light; `None` for uniform light.
     pub dominant_direction: Option<Vec3>,
-    /// The environment is the same in all directions: lobes see what the harmonics say, and the cube is not read.
+    /// True if the environment is uniform. Lobes then use the harmonics, and the cube is not read.
     pub is_even: bool,
-    /// The sun, where it is apart from the map.
+    /// Sun, if it is separate from the map.
     pub sun: Option<Light>,
-    /// Whether the cube was found in a cache on disk rather than computed.
+    /// True if the cube was loaded from a cache on disk.
     pub from_cache: bool,
-    /// Texels that were clamped, and what went wrong with the cache, a line each.
+    /// One line for each clamped value and each cache error.
     pub warnings: Vec<String>,
-    /// Bytes of the cube.
+    /// Size of the cube in bytes.
     pub size_bytes: u64,
 }
 
 impl ImageLight {
-    /// Whether shaders decode the cube's texels by `linear_from_rgbm` of `wgsl/lib/rgbm.wgsl`.
+    /// Returns true if shaders must decode the cube's texels by `linear_from_rgbm` of `wgsl/lib/rgbm.wgsl`.
     #[must_use]
     pub fn is_rgbm(&self) -> bool {
         self.format == TextureFormat::Rgba8Unorm
     }
 
-    /// The coefficients times `scale`: intensity times exposure gives what shaders are handed.
+    /// Returns the coefficients times `scale`. Shaders expect intensity times exposure.
     #[must_use]
     pub fn exposed_irradiance(&self, scale: f32) -> [Vec4; IRRADIANCE_COEFFICIENTS] {
         self.irradiance.map(|c| c * scale)

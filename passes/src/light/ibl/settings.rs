@@ -1,39 +1,39 @@
-//! What an environment's light is made with.
+//! Settings of prefiltered environments.
 
 use framegraph_scene::environment::{ShBands, ShWindow};
 use framegraph_scene::error::SceneError;
 
-/// Storage of the prefiltered environment's texels.
+/// Storage format of the prefiltered cube.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum EnvironmentFormat {
-    /// `Rg11b10Ufloat`, 4 bytes a texel; half floats where the device cannot draw that format, and for light that the
-    /// environment came with.
+    /// `Rg11b10Ufloat`, 4 bytes a texel. Falls back to half floats if the device cannot render to it, and for light
+    /// that comes with the environment.
     #[default]
     Rg11b10,
     /// `Rgba16Float`, 8 bytes a texel.
     Half,
-    /// `Rgba8Unorm` as RGBM, 4 bytes a texel: every device has it, and shaders decode it. Holds numbers from 0 to the cube's
-    /// brightest channel, with steps of 0.4 to 0.9 % there. Filters interpolate codes, which shows where bright texels are
-    /// beside dark ones.
+    /// RGBM in `Rgba8Unorm`, 4 bytes a texel. Every device supports it, and shaders decode it. The range is 0 to the
+    /// cube's brightest channel, with steps of 0.4 to 0.9 % there. Filtering interpolates encoded values, which is
+    /// visible next to very bright texels.
     Rgbm,
 }
 
-/// How fine the light is. The default is what Filament does: 256 texels, five levels, three bands.
+/// Settings of a prefiltered environment. The default is Filament's: 256 texels, five levels, three bands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IblSettings {
     /// Width and height of the specular cube in texels: a power of two, 64…1024.
     pub cube_texels: u32,
-    /// Levels of roughness, 5…8, the last no smaller than 2 texels: of 256 texels the fifth level has 16 and
-    /// the eighth 2. More levels err less between them, but the last one must still show the lobe of
-    /// roughness 1: under a disc of 5° seven levels err by 12 % at most where five err by 46 %, and eight
-    /// by 14 % because two texels are too few. `ibl_errors specular` prints the table.
+    /// Number of roughness levels, 5…8. The last level has at least 2 texels a side: at 256 texels the fifth has 16,
+    /// the eighth 2. More levels reduce the error of interpolation, but the last one must resolve the lobe of
+    /// roughness 1. Under a disc of 5°, the error is up to 46 % with five levels, 12 % with seven and 14 % with eight.
+    /// `ibl_errors specular` prints the table.
     pub levels: u32,
     /// Bands of the spherical harmonics of irradiance.
     pub bands: ShBands,
-    /// Whether high bands are weakened against ringing.
+    /// Windowing of high bands against ringing.
     pub window: ShWindow,
-    /// Storage of the cube's texels.
+    /// Storage format of the cube.
     pub format: EnvironmentFormat,
 }
 
@@ -50,11 +50,11 @@ impl Default for IblSettings {
 }
 
 impl IblSettings {
-    /// Checks that every setting is in its range, as making light does first.
+    /// Checks the range of every setting.
     ///
     /// # Errors
     ///
-    /// The first setting that is out of range, by name.
+    /// Fails if a setting is out of range, and names the first.
     pub fn check(&self) -> Result<(), SceneError> {
         let refuse = |parameter, value: f64, range| Err(SceneError::Parameter { parameter, value, range });
         if !(self.cube_texels.is_power_of_two() && (64..=1024).contains(&self.cube_texels)) {

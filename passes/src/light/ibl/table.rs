@@ -1,14 +1,14 @@
-//! The DFG table: how much the lobes reflect, whatever the environment.
+//! DFG table: directional albedo of the lobes, independent of the environment.
 
 use framegraph_shaders::reference::dfg::Visibility;
 use wgpu::TextureView;
 
-/// How fine the table is, and which visibility term it goes with.
+/// Size and visibility term of the DFG table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DfgSettings {
-    /// Width and height in texels, 16…256. 128 err by at most 0.0022, 64 by 0.0057.
+    /// Width and height in texels, 16…256. The error is at most 0.0022 with 128 texels, and 0.0057 with 64.
     pub texels: u32,
-    /// The term that shades: a table made for another breaks the white furnace twice.
+    /// Visibility term of shading. Another term breaks energy conservation.
     pub visibility: Visibility,
 }
 
@@ -18,21 +18,19 @@ impl Default for DfgSettings {
     }
 }
 
-/// Directional albedo of the lobes, on one device: `Rgba16Float`, columns from n·v = 0 to 1, rows from
-/// perceptual roughness 0 to 1, texel centers at both ends. To be looked up at `dfg_uv` of
-/// `wgsl/lib/dfg.wgsl`, bilinearly and clamped.
+/// Directional albedo of the lobes, on a device: `Rgba16Float`, columns from n·v = 0 to 1, rows from perceptual
+/// roughness 0 to 1, texel centers at both ends. Sample it at `dfg_uv` of `wgsl/lib/dfg.wgsl`, bilinearly and clamped.
 ///
-/// Red is ∫ D·V·Fc·cos with Fc = (1 - v·h)⁵ and green ∫ D·V·cos: the specular albedo is
-/// mix(red, green, f0), and multiple scattering gives back f0·(1/green - 1). Blue is ∫ D·V·cos of the
-/// cloth lobe. Alpha is 1.
+/// Red is ∫ D·V·Fc·cos with Fc = (1 - v·h)⁵, and green ∫ D·V·cos. The specular albedo is mix(red, green, f0), and
+/// multiple scattering adds the factor f0·(1/green - 1). Blue is ∫ D·V·cos of the cloth lobe. Alpha is 1.
 #[derive(Debug)]
 pub struct DfgTable {
-    /// The texture, of one level.
+    /// View of the texture, which has one level.
     pub view: TextureView,
-    /// Its size and visibility term.
+    /// Size and visibility term.
     pub settings: DfgSettings,
-    /// Whether it was found in a cache on disk rather than computed.
+    /// True if the table was loaded from a cache on disk.
     pub from_cache: bool,
-    /// What went wrong with the cache, a line each; the table is right all the same.
+    /// One line for each cache error. The table is valid in spite of them.
     pub warnings: Vec<String>,
 }
