@@ -24,7 +24,7 @@
 //! ```
 //! use framegraph_shaders::{Effect, Features, Module, Shader, library, resolve};
 //!
-//! Paths in constants are checked at compile time.
+//! // Paths in constants are checked at compile time.
 //! const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
 //! const EXPOSE: Effect<'_> = Effect { name: "expose", wgsl: library::text("effect/expose.wgsl").unwrap() };
 //! const TONE: Effect<'_> = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
@@ -34,7 +34,7 @@
 //! let names: Vec<&str> = fragment.bindings.iter().map(|b| b.name.as_str()).collect();
 //! assert_eq!(names, ["hdr", "exposing"]);
 //!
-//! Shaders of an application may import the embedded files under `package::`.
+//! // Shaders of an application may import the embedded files under `package::`.
 //! let own = "import package::lib::luminance::luminance;
 //! @group(0) @binding(0) var picture: texture_2d<f32>;
 //! @fragment fn fs_main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {

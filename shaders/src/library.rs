@@ -82,7 +82,7 @@ const fn same(a: &str, b: &str) -> bool {
 /// use framegraph_shaders::{Feature, Features, Module, resolve};
 ///
 /// const SNOW: Feature = Feature::new("SNOW");
-/// Usually `include_str!("ground.wgsl")`.
+/// // Usually `include_str!("ground.wgsl")`.
 /// const TEXT: &str = "import package::lib::luminance::luminance;
 /// @group(0) @binding(0) var picture: texture_2d<f32>;
 /// @if(SNOW) const BRIGHTER: f32 = 2.0;

@@ -205,8 +205,8 @@ impl<'a> Modules<'a> {
         places.zip(first..).collect()
     }
 
-    /// Fails if two files declare the same name, because names are kept as written. The error names the file that is
-    /// not the root's import.
+    /// Fails if two files declare the same name, because names are kept as written. The error points at the root if the
+    /// root is one of them.
     fn refuse_doubles(&self, reached: &BTreeSet<(usize, usize)>) -> Result<(), ShaderError> {
         let mut owners: BTreeMap<&str, usize> = BTreeMap::new();
         for &(index, at) in reached.iter().rev() {
