@@ -67,7 +67,7 @@ pub struct ShadowMapUniforms {
     pub _pad: [u32; 2],
 }
 
-/// View with which a shadow map is drawn; `wgsl/pass/shadow.wgsl`.
+/// View that draws a shadow map; `wgsl/pass/shadow.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ShadowViewUniforms {
