@@ -1,16 +1,9 @@
 // Color pass: glTF metal-rough surfaces lit by the sun, punctual lights and the environment.
 //
-// The shading is Filament's standard model: GGX with height-correlated Smith visibility, Schlick's
-// Fresnel, Lambert, and multiple-scattering compensation from a DFG table. Lights are photometric
-// and pre-exposed; the output is pre-exposed linear Rec.709 radiance. shading/quality.wgsl holds
-// the overrides of a quality preset.
-//
-// `fs_main` passes the color through the epilogue (interface/epilogue.wgsl). Order-independent
-// blending uses `fs_weighted`, or `fs_absorbance` and then `fs_moments`.
-//
-// src/feature.rs describes the features. Features change bindings or vertex inputs; overrides
-// change only arithmetic. HALF computes materials and reflection in f16 (lib/real.wgsl); light and
-// positions stay f32.
+// The shading is Filament's standard model. Lights are photometric; input and output radiance is
+// pre-exposed linear Rec.709. src/feature.rs describes the features; shading/quality.wgsl has the
+// overrides of presets. `fs_main` ends with the epilogue (interface/epilogue.wgsl). With HALF,
+// materials and BRDFs are f16 (lib/real.wgsl); light and positions stay f32.
 
 import package::interface::epilogue::epilogue;
 @if(FOG)
@@ -178,12 +171,7 @@ fn sheen_of(uv: vec4<f32>, nov: f32) -> Sheen {
 
 /// Returns the anisotropy of a fragment whose base has `alpha`.
 @if(ANISOTROPY)
-fn anisotropy_of(
-    vertex: SurfaceVertex,
-    normal: vec3<f32>,
-    side: f32,
-    alpha: real,
-) -> Anisotropy {
+fn anisotropy_of(vertex: SurfaceVertex, normal: vec3<f32>, side: f32, alpha: real) -> Anisotropy {
     let values = anisotropy(texture_uv(vertex));
     let tangent = anisotropy_direction(normal, normal * side, vertex.tangent, values.xy);
     let floor = real(ROUGHNESS_FLOOR * ROUGHNESS_FLOOR);
@@ -276,8 +264,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     // Blended surfaces are missing in the depth from which ambient occlusion and reflections come.
     let slope = vec2<f32>(dpdx(vertex.position.z), dpdy(vertex.position.z));
     let on_screen = ALPHA_MODE != 2u;
-    let visibility =
-        ambient_visibility(surface.base, uv, vertex.position, slope, on_screen);
+    let visibility = ambient_visibility(surface.base, uv, vertex.position, slope, on_screen);
     var below = reflect_environment(
         surface, normal, view, roughness, dfg, visibility, vertex.position, vertex.world, on_screen,
     );
