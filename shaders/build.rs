@@ -1,11 +1,11 @@
-//! Lists the files of `wgsl/`, so that a new one is embedded without being named anywhere.
+//! Lists the files of `wgsl/`, so that new files are embedded automatically.
 
 use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Paths of all files in `folder`, as they are named from `root`, with slashes.
+/// Collects the paths of all files in `folder`, relative to `root`, with slashes.
 fn list(root: &Path, folder: &Path, paths: &mut Vec<String>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

@@ -1,24 +1,25 @@
-//! Point-wise effects: what may happen to a color between shading and the target.
+//! Point-wise effects, applied to a color between shading and the render target.
 //!
-//! [`resolve`](crate::resolve()) calls a list of them in the socket `interface/epilogue.wgsl`, which shading passes and
-//! full-screen passes end with: one text of each effect serves both.
+//! Shading passes and full-screen passes end with the socket `interface/epilogue.wgsl`, in which
+//! [`resolve`](crate::resolve()) calls a list of effects. Every effect therefore has one text for both kinds of pass.
 
 use std::borrow::Cow;
 use std::fmt::Write;
 
 use crate::{ShaderError, library};
 
-/// A WGSL file `effect/NAME.wgsl` with a function
-/// `NAME(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32>`, where `pixel` is the position in pixels.
+/// A point-wise effect: a WGSL file `effect/NAME.wgsl` with a function `NAME(color: vec4<f32>, pixel: vec2<f32>) ->
+/// vec4<f32>`, where `pixel` is the position in pixels.
 ///
-/// It may import the embedded files, declare overrides, and bind resources in group 0: with binding numbers of its own from
-/// 0, which [`resolve`](crate::resolve()) moves behind those of the pass and of other effects. The texts of the embedded
-/// ones are [`library::text("effect/NAME.wgsl")`](library::text). Two effects are equal when their names are.
+/// An effect may import the embedded files, declare overrides, and bind resources in group 0. Its binding numbers begin
+/// at 0; [`resolve`](crate::resolve()) moves them behind those of the pass and of other effects.
+/// [`library::text("effect/NAME.wgsl")`](library::text) returns the text of an embedded effect. Two effects are equal
+/// if their names are equal.
 #[derive(Clone, Copy, Debug)]
 pub struct Effect<'a> {
     /// Name of the file and of its function.
     pub name: &'a str,
-    /// The text.
+    /// WGSL text of the effect.
     pub wgsl: &'a str,
 }
 
@@ -30,18 +31,19 @@ impl PartialEq for Effect<'_> {
 
 impl Eq for Effect<'_> {}
 
-/// Path of the file that effects are plugged into.
+/// Path of the file in which effects are called.
 pub(crate) const SOCKET: &str = "interface/epilogue.wgsl";
 /// Folder of effects.
 pub(crate) const FOLDER: &str = "effect/";
 
-/// Texts that stand in for embedded files or beside them, by path.
+/// Texts that replace embedded files or are added to them, by path.
 pub(crate) type Overlay<'a> = Vec<(String, Cow<'a, str>)>;
 
-/// The socket filled with `effects`, and the files of those that are not embedded.
+/// Returns the socket that calls `effects`, and the files of effects that are not embedded.
 ///
 /// # Errors
-/// When two effects of one name have different texts, or a name is no identifier.
+///
+/// If two effects of the same name have different texts, or a name is not an identifier.
 pub(crate) fn overlay<'a>(effects: &[Effect<'a>]) -> Result<Overlay<'a>, ShaderError> {
     let mut files = Overlay::new();
     if effects.is_empty() {

@@ -1,40 +1,39 @@
-//! What can be wrong with a shader.
+//! Errors of shader resolution.
 
-/// Why a shader could not be resolved. Every variant names the file as the author knows it,
-/// not the text that the resolver made of it.
+/// Error from resolving a shader. Every variant names the author's file, not the text that the resolver generates.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShaderError {
-    /// A feature that no file of the shader can test.
+    /// Feature that no file of the shader can test.
     #[error("{file}: `{name}` is not a known feature; list it in `Module::features`, or correct its name")]
     UnknownFeature {
-        /// Its name.
+        /// Name of the feature.
         name: &'static str,
-        /// The shader.
+        /// File of the shader.
         file: String,
     },
-    /// Effects for a shader that has no place for them.
+    /// Effects were given for a shader that does not end with the socket for effects.
     #[error("{file}: the shader takes no effects; it would have to call `package::interface::epilogue::epilogue`")]
     NoEpilogue {
-        /// The shader.
+        /// File of the shader.
         file: String,
     },
-    /// A file name that cannot be used, or is taken.
+    /// File name that is invalid or already in use.
     #[error("shader file `{file}`: {reason}")]
     FileName {
-        /// The name as given.
+        /// File name as given.
         file: String,
-        /// What is wrong with it.
+        /// Reason for the rejection.
         reason: &'static str,
     },
-    /// The source does not parse, imports what does not exist, or does not validate.
+    /// The source does not parse, imports a missing item, or fails validation.
     #[error("{file}:{line}: {message}")]
     Source {
-        /// File, relative to `wgsl/` for embedded ones.
+        /// Path of the file, relative to `wgsl/` for embedded files.
         file: String,
-        /// Line, from one.
+        /// Line number, starting at 1.
         line: usize,
-        /// What is wrong, from the resolver or naga.
+        /// Message from the resolver or naga.
         message: String,
     },
 }

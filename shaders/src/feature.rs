@@ -1,38 +1,38 @@
-//! Features: what is compiled into a shader or left out.
+//! Features: compile-time switches of shaders.
 //!
-//! A feature changes the *interface* of a shader: which resources it binds; or, for one of them,
-//! the type of number that shading computes in. Settings that change only arithmetic are WGSL
-//! `override` constants, set when the pipeline is made, so that one resolved text serves them all.
+//! A feature changes the *interface* of a shader, that is, the resources it binds. One feature,
+//! [`HALF`](Feature::HALF), changes the number type of shading instead. Settings that change only arithmetic are WGSL
+//! `override` constants. They are set when the pipeline is created, so one resolved text serves all their values.
 
-/// One compile-time switch, tested in WGSL by `@if(NAME)`. Those of this crate are constants; another crate makes its own
-/// and lists them in [`Module::features`](crate::Module::features).
+/// Compile-time switch, tested in WGSL by `@if(NAME)`. This crate's features are constants; another crate creates its
+/// own and lists them in [`Module::features`](crate::Module::features).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Feature(&'static str);
 
 impl Feature {
-    /// Shadow maps of depth are read through a tent.
+    /// Reads depth shadow maps with a tent filter.
     pub const SHADOWS: Self = Self("SHADOWS");
-    /// Shadow maps of depth are read with penumbrae.
+    /// Reads depth shadow maps with soft penumbrae.
     pub const SHADOW_SOFT: Self = Self("SHADOW_SOFT");
-    /// Shadow maps of moments of warped depth are read.
+    /// Reads shadow maps that store moments of warped depth.
     pub const SHADOW_MOMENTS: Self = Self("SHADOW_MOMENTS");
-    /// The sun's shadows are completed by a short ray through the structure of the scene.
+    /// Adds contact shadows of the sun: a short ray through the depth pyramid of visible surfaces.
     pub const CONTACT_SHADOWS: Self = Self("CONTACT_SHADOWS");
-    /// A picture of ambient occlusion is read, a texel a pixel.
+    /// Reads an ambient occlusion texture at full resolution.
     pub const AMBIENT_OCCLUSION: Self = Self("AMBIENT_OCCLUSION");
-    /// A picture of ambient occlusion is read that is smaller than what is shaded, and the structure of the scene with it.
+    /// Reads an ambient occlusion texture of lower resolution and upsamples it with the depth pyramid.
     pub const OCCLUSION_UPSAMPLED: Self = Self("OCCLUSION_UPSAMPLED");
-    /// Punctual lights are found by lists for parts of what is seen; without it every light is looked at everywhere.
+    /// Looks up punctual lights in the lists of froxels. Without it, every fragment evaluates every light.
     pub const FROXELS: Self = Self("FROXELS");
-    /// What rays found in the picture is reflected before the environment is.
+    /// Reads the texture of screen-space reflections before the environment.
     pub const REFLECTIONS: Self = Self("REFLECTIONS");
-    /// What is seen through fog.
+    /// Applies fog to surfaces and background.
     pub const FOG: Self = Self("FOG");
-    /// The sun's disc and its halo are drawn over the background.
+    /// Draws the sun's disc and its halo over the background.
     pub const SUN_HALO: Self = Self("SUN_HALO");
-    /// Where what moves was in the frame before is read.
+    /// Reads the positions of moving objects in the previous frame.
     pub const VELOCITY: Self = Self("VELOCITY");
-    /// The environment's prefiltered specular cube is read; without it lobes see three bands of spherical harmonics.
+    /// Reads the environment's prefiltered specular cube. Without it, lobes use three bands of spherical harmonics.
     pub const ENVIRONMENT_MAP: Self = Self("ENVIRONMENT_MAP");
     /// Clear coat (KHR_materials_clearcoat).
     pub const CLEAR_COAT: Self = Self("CLEAR_COAT");
@@ -46,27 +46,28 @@ impl Feature {
     pub const SPECULAR: Self = Self("SPECULAR");
     /// Thin film over the base (KHR_materials_iridescence).
     pub const IRIDESCENCE: Self = Self("IRIDESCENCE");
-    /// Refraction that differs by color (KHR_materials_dispersion); read with `TRANSMISSION`.
+    /// Wavelength-dependent refraction (KHR_materials_dispersion); used with `TRANSMISSION`.
     pub const DISPERSION: Self = Self("DISPERSION");
     /// Diffuse transmission (KHR_materials_diffuse_transmission and KHR_materials_volume).
     pub const DIFFUSE_TRANSMISSION: Self = Self("DIFFUSE_TRANSMISSION");
-    /// Light that is scattered below the surface, as Filament's shading model `subsurface` has it.
+    /// Subsurface scattering, as in Filament's shading model `subsurface`.
     pub const SUBSURFACE: Self = Self("SUBSURFACE");
-    /// Diffuse light that is wrapped and tinted, as Filament's shading model `cloth` has it.
+    /// Wrapped and tinted diffuse light, as in Filament's shading model `cloth`.
     pub const CLOTH_SUBSURFACE: Self = Self("CLOTH_SUBSURFACE");
-    /// The material has a texture: its coordinates come with the vertices.
+    /// The material has a texture, so vertices provide texture coordinates.
     pub const TEXTURED: Self = Self("TEXTURED");
-    /// The mesh has colors at its vertices.
+    /// The mesh has vertex colors.
     pub const VERTEX_COLORS: Self = Self("VERTEX_COLORS");
-    /// Materials are elements of one array, each surface's by the number that its instance has; without it each is bound alone.
+    /// Reads materials from one array, by the number that the instance provides. Without it, each material has its own
+    /// bind group.
     pub const MATERIAL_TABLE: Self = Self("MATERIAL_TABLE");
-    /// What a vertex has to know of its object comes in the stream of instances; without it the object's number does.
+    /// Reads the object's attributes from the instance stream. Without it, the stream holds only the object's number.
     pub const INSTANCE_STREAM: Self = Self("INSTANCE_STREAM");
-    /// Shading computes in f16 where that is safe; the device must have `SHADER_F16`.
+    /// Computes shading in f16 where that is accurate enough; the device must have `SHADER_F16`.
     pub const HALF: Self = Self("HALF");
 
-    /// The features that materials call for. Each binds textures of its own, but for
-    /// `DISPERSION`, `SUBSURFACE` and `CLOTH_SUBSURFACE`.
+    /// Features that materials enable. Each binds its own textures, except `DISPERSION`, `SUBSURFACE` and
+    /// `CLOTH_SUBSURFACE`.
     pub const LOBES: &[Self] = &[
         Self::CLEAR_COAT,
         Self::SHEEN,
@@ -79,7 +80,7 @@ impl Feature {
         Self::SUBSURFACE,
         Self::CLOTH_SUBSURFACE,
     ];
-    /// The features that the embedded files test and materials do not call for.
+    /// Features of the embedded files that do not depend on the material.
     pub const OTHERS: &[Self] = &[
         Self::SHADOWS,
         Self::SHADOW_SOFT,
@@ -100,31 +101,31 @@ impl Feature {
         Self::HALF,
     ];
 
-    /// The feature tested as `@if(name)`.
+    /// Creates the feature that WGSL tests as `@if(name)`.
     pub const fn new(name: &'static str) -> Self {
         Self(name)
     }
 
-    /// The name tested in WGSL.
+    /// Returns the name tested in WGSL.
     pub const fn name(self) -> &'static str {
         self.0
     }
 
-    /// All features that the embedded files test.
+    /// Returns all features that the embedded files test.
     pub fn all() -> impl Iterator<Item = Self> + Clone {
         Self::OTHERS.iter().chain(Self::LOBES).copied()
     }
 }
 
-/// A set of features.
+/// Set of features.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Features(Vec<Feature>);
 
 impl Features {
-    /// Nothing switched on.
+    /// The empty set.
     pub const NONE: Self = Self(Vec::new());
 
-    /// The set with `feature` added.
+    /// Returns the set with `feature` added.
     #[must_use]
     pub fn with(mut self, feature: Feature) -> Self {
         if let Err(at) = self.0.binary_search(&feature) {
@@ -133,23 +134,23 @@ impl Features {
         self
     }
 
-    /// The set with `feature` added if `on`.
+    /// Returns the set with `feature` added if `on` is true.
     #[must_use]
     pub fn with_if(self, feature: Feature, on: bool) -> Self {
         if on { self.with(feature) } else { self }
     }
 
-    /// Whether nothing is switched on.
+    /// Returns true if the set is empty.
     pub const fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Whether `feature` is in the set.
+    /// Returns true if the set contains `feature`.
     pub fn contains(&self, feature: Feature) -> bool {
         self.0.binary_search(&feature).is_ok()
     }
 
-    /// The members, by name.
+    /// Returns the features of the set, sorted by name.
     pub fn iter(&self) -> impl Iterator<Item = Feature> {
         self.0.iter().copied()
     }

@@ -1,22 +1,20 @@
 //! Rust mirrors of the structs and vertices that the shaders read.
 //!
-//! Each struct is `#[repr(C)]` with explicit padding and can be written to a buffer as bytes.
-//! A test compares name, size and every member's offset with naga's layout of the WGSL
-//! struct, and fails when either side has a struct or member without a partner; for it each
-//! file lists its structs in `layouts`.
+//! Each struct is `#[repr(C)]` with explicit padding and can be written to a buffer as bytes. A test compares the name,
+//! the size and every member's offset with naga's layout of the WGSL struct. It fails if either side has a struct or
+//! member without a counterpart. Each file lists its structs in `layouts` for this test.
 //!
-//! All of them are [`Zeroable`](bytemuck::Zeroable); constructors that can be got wrong (the
-//! normal matrix, spot cones, texture transforms) are functions here, so that renderers do
-//! not each do them anew.
+//! All structs are [`Zeroable`](bytemuck::Zeroable). Error-prone values, such as normal matrices, spot cones and
+//! texture transforms, have constructors here.
 
-/// Size of a field without naming its type.
+/// Returns the size of a field without naming its type.
 #[cfg(test)]
 const fn size_of_field<S, F>(_: fn(&S) -> &F) -> u32 {
     size_of::<F>() as u32
 }
 
-/// The layout of a Rust struct, given all its fields. A macro because only one can name
-/// fields; the pattern without `..` refuses to compile when a field is left out.
+/// Returns the layout of a Rust struct, given all its fields. A macro is necessary to name fields; its pattern without
+/// `..` fails to compile if a field is missing.
 #[cfg(test)]
 macro_rules! layout_of {
     ($name:ident { $($field:ident),* $(,)? }) => {{

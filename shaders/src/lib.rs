@@ -1,18 +1,30 @@
-//! WGSL shaders and what keeps them honest.
+//! This crate provides the WGSL shaders of the standard frame, a resolver for their imports, and Rust types that match
+//! them. It depends on naga but not on wgpu: it returns shader text and plain data, and never needs a device.
 //!
-//! - `wgsl/lib/` holds pure functions, one idea a file; `wgsl/interface/` the structs and
-//!   bindings that passes share; `wgsl/effect/` point-wise effects; `wgsl/pass/` the entry
-//!   points, one file a pass.
-//! - [`resolve()`] joins a pass with what it imports into one plain WGSL text, from sources
-//!   embedded in the program, and hands it back validated and [reflected](reflect).
+//! # Overview
+//!
+//! The shaders are files embedded in the program:
+//!
+//! - `wgsl/lib/` holds pure functions, one topic per file.
+//! - `wgsl/interface/` holds the structs and bindings that several passes share.
+//! - `wgsl/shading/` assembles the library into the lighting of the color pass.
+//! - `wgsl/effect/` holds point-wise effects, such as exposure and tone mapping.
+//! - `wgsl/pass/` holds the entry points, one file per pass.
+//!
+//! The Rust side has four parts:
+//!
+//! - [`resolve()`] combines a pass with its imports into one plain WGSL text, validates it with naga and
+//!   [reflects](reflect) it.
+//! - [`Features`] are compile-time switches of a shader, tested in WGSL by `@if(NAME)`.
 //! - [`layout`] mirrors every uniform and storage struct; a test compares sizes and offsets.
-//! - [`reference`](mod@reference) mirrors every function of `wgsl/lib/` in f64: same file
-//!   name, same function name.
+//! - [`reference`](mod@reference) mirrors every function of `wgsl/lib/` in f64, under the same file and function names.
+//!
+//! # Example
 //!
 //! ```
 //! use framegraph_shaders::{Effect, Features, Module, Shader, library, resolve};
 //!
-//! // Paths of constants are checked when they are compiled.
+//! // Paths in constants are checked at compile time.
 //! const POST: Module<'_> = library::pass("pass/post.wgsl").unwrap();
 //! const EXPOSE: Effect<'_> = Effect { name: "expose", wgsl: library::text("effect/expose.wgsl").unwrap() };
 //! const TONE: Effect<'_> = Effect { name: "tone", wgsl: library::text("effect/tone.wgsl").unwrap() };
@@ -22,7 +34,7 @@
 //! let names: Vec<&str> = fragment.bindings.iter().map(|b| b.name.as_str()).collect();
 //! assert_eq!(names, ["hdr", "exposing"]);
 //!
-//! // A shader of one's own may import the embedded files under `package::`.
+//! // Shaders of an application may import the embedded files under `package::`.
 //! let own = "import package::lib::luminance::luminance;
 //! @group(0) @binding(0) var picture: texture_2d<f32>;
 //! @fragment fn fs_main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {

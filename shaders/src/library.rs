@@ -1,23 +1,24 @@
-//! WGSL files: those embedded in this crate, and shaders of other crates that import them.
+//! WGSL files: the embedded files of this crate, and shaders of other crates that import them.
 //!
-//! The embedded ones are part of the program, so nothing is read from disk at run time. `build.rs` lists the folder.
+//! Embedded files are part of the program, so nothing is read from disk at run time. `build.rs` lists the folder.
 
 use crate::Feature;
 
-/// A WGSL file that shaders may import from.
+/// WGSL file that shaders can import from.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
-    /// Path with slashes, as errors name it and, without ending, as imports do: `lib/ggx.wgsl` is
-    /// `package::lib::ggx`. Embedded ones are relative to `wgsl/`.
+    /// Path with slashes, as errors name it. Imports leave out the extension: `lib/ggx.wgsl` is `package::lib::ggx`.
+    /// Paths of embedded files are relative to `wgsl/`.
     pub path: &'a str,
-    /// The text: WGSL with `import` statements and `@if` attributes.
+    /// WGSL text with `import` statements and `@if` attributes.
     pub wgsl: &'a str,
 }
 
 /// All embedded files, sorted by path.
 pub const SOURCES: &[Source<'static>] = include!(concat!(env!("OUT_DIR"), "/sources.rs"));
 
-/// The text of an embedded file, by its path relative to `wgsl/`. In a constant a wrong path fails to compile:
+/// Returns the text of an embedded file, by its path relative to `wgsl/`. In a constant, a wrong path is a compile
+/// error:
 ///
 /// ```
 /// const EXPOSE: &str = framegraph_shaders::library::text("effect/expose.wgsl").unwrap();
@@ -33,8 +34,9 @@ pub const fn text(path: &str) -> Option<&'static str> {
     None
 }
 
-/// The text of an embedded file that shaders are made of: [`text`], unless the feature `replaced` is on and the folder that
-/// the variable `FRAMEGRAPH_WGSL` names has a file of this path. Such a file is read once, when it is first asked for.
+/// Returns the text of an embedded file for use in shaders. This is [`text`], unless the feature `replaced` is on and
+/// the folder in the environment variable `FRAMEGRAPH_WGSL` contains the file. A replacement is read once, on first
+/// use.
 pub fn in_use(path: &str) -> Option<&'static str> {
     let embedded = text(path)?;
     #[cfg(feature = "replaced")]
@@ -44,7 +46,7 @@ pub fn in_use(path: &str) -> Option<&'static str> {
     Some(embedded)
 }
 
-/// An embedded pass, by its path relative to `wgsl/`. In a constant a wrong path fails to compile:
+/// Returns an embedded pass, by its path relative to `wgsl/`. In a constant, a wrong path is a compile error:
 ///
 /// ```
 /// use framegraph_shaders::{Module, library};
@@ -58,12 +60,12 @@ pub const fn pass(path: &'static str) -> Option<Module<'static>> {
     }
 }
 
-/// All embedded passes, by path.
+/// Returns all embedded passes, sorted by path.
 pub fn passes() -> impl Iterator<Item = Module<'static>> {
     SOURCES.iter().filter(|source| source.path.starts_with("pass/")).map(|source| Module::new(source.path, source.wgsl))
 }
 
-/// `==` of texts in constants.
+/// Compares texts in constants.
 const fn same(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     let mut index = 0;
@@ -73,13 +75,14 @@ const fn same(a: &str, b: &str) -> bool {
     index == a.len() && index == b.len()
 }
 
-/// A shader: a file with entry points, and what it needs beside the embedded files. Two are equal when their paths are.
+/// Shader: a file with entry points, and everything it needs besides the embedded files. Two modules are equal if their
+/// paths are equal.
 ///
 /// ```
 /// use framegraph_shaders::{Feature, Features, Module, resolve};
 ///
 /// const SNOW: Feature = Feature::new("SNOW");
-/// // In a crate of its own: `include_str!("ground.wgsl")`.
+/// // Usually `include_str!("ground.wgsl")`.
 /// const TEXT: &str = "import package::lib::luminance::luminance;
 /// @group(0) @binding(0) var picture: texture_2d<f32>;
 /// @if(SNOW) const BRIGHTER: f32 = 2.0;
@@ -95,23 +98,23 @@ const fn same(a: &str, b: &str) -> bool {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Module<'a> {
-    /// Names the file in errors and in the resolved text.
+    /// Path that names the file in errors and in the resolved text.
     pub path: &'a str,
-    /// The text.
+    /// WGSL text.
     pub wgsl: &'a str,
-    /// Features that it or its sources test and the embedded files do not know.
+    /// Features that the shader or its sources test, besides those of the embedded files.
     pub features: &'a [Feature],
-    /// Files that it or they import beside the embedded ones, which they cannot replace.
+    /// Files that the shader or its sources import, besides the embedded files. They cannot replace embedded files.
     pub sources: &'a [Source<'a>],
 }
 
 impl<'a> Module<'a> {
-    /// A shader that needs nothing but the embedded files.
+    /// Creates a shader that needs only the embedded files.
     pub const fn new(path: &'a str, wgsl: &'a str) -> Self {
         Self { path, wgsl, features: &[], sources: &[] }
     }
 
-    /// The path's last part without ending, as in labels: `color`.
+    /// Returns the last part of the path without extension, for labels: `color`.
     pub fn name(&self) -> &'a str {
         let file = self.path.rsplit(['/', '\\']).next().unwrap_or(self.path);
         file.strip_suffix(".wgsl").unwrap_or(file)

@@ -1,14 +1,11 @@
-//! The library of `wgsl/lib/` again, in f64: same file name, same function name.
+//! Mirrors of the functions of `wgsl/lib/` in f64, under the same file and function names.
 //!
-//! A mirror is the truth that the shader is measured against. It states the mathematics, in
-//! f64 and without the shader's tricks where those are only there for f32, but with the same
-//! clamps where they define the function. Each file tests known values and invariants of its
-//! functions; [`cases`] lists every function with its domain and error bound as data, so that
-//! a harness with a device can compare without knowing any of them.
+//! A mirror is the reference for the shader's accuracy. It omits tricks that only f32 needs, and keeps clamps that are
+//! part of the function. Each file tests known values and invariants of its functions. [`cases`] lists every function
+//! with its domain and error bound as data, so one generic test can compare all of them on a device.
 //!
-//! Some files hold more than their WGSL counterpart: what the CPU computes once for a frame or a
-//! scene and the shader only reads ([`dfg::dfg_table`], [`sh::project_irradiance_sh`],
-//! [`sky::Preetham`]).
+//! Some files also contain values that the CPU computes once per frame or scene and the shader only reads
+//! ([`dfg::dfg_table`], [`sh::project_irradiance_sh`], [`sky::Preetham`]).
 
 pub mod aces;
 pub mod agx;

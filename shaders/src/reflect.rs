@@ -1,7 +1,7 @@
-//! What a resolved shader asks of a pipeline, as plain data.
+//! Reflection of a resolved shader: the interface that a pipeline must match, as plain data.
 //!
-//! Bind group layouts, vertex layouts and pipeline constants are derived from this and not
-//! written a second time by hand, so they cannot drift from the WGSL.
+//! Bind group layouts, vertex layouts and pipeline constants are derived from reflection rather than written by hand.
+//! They therefore always match the WGSL.
 
 mod interface;
 mod operations;

@@ -1,11 +1,12 @@
-//! For tests that plant faults: shaders made of other texts than the embedded ones, and which lines a program compiles.
+//! Support for mutation tests: replaces embedded texts, and records the lines that a program compiles.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-/// The text of this path in the folder that the variable `FRAMEGRAPH_WGSL` names, if it has one. Each is read once and kept.
+/// Returns the text of this path in the folder that the environment variable `FRAMEGRAPH_WGSL` names, if it exists.
+/// Each text is read once and kept.
 pub(crate) fn text(path: &str) -> Option<&'static str> {
     static READ: Mutex<BTreeMap<String, Option<&'static str>>> = Mutex::new(BTreeMap::new());
     let mut texts = READ.lock().unwrap_or_else(PoisonError::into_inner);
@@ -16,7 +17,7 @@ pub(crate) fn text(path: &str) -> Option<&'static str> {
     *texts.entry(path.to_owned()).or_insert_with(read)
 }
 
-/// Adds lines, as file and number, to the file that the variable `FRAMEGRAPH_WGSL_LINES` names, each once.
+/// Appends each line once, as file and number, to the file that the environment variable `FRAMEGRAPH_WGSL_LINES` names.
 pub(crate) fn note<'a>(lines: impl Iterator<Item = (&'a str, usize)>) {
     static NOTED: Mutex<BTreeSet<(String, usize)>> = Mutex::new(BTreeSet::new());
     let Some(file) = std::env::var_os("FRAMEGRAPH_WGSL_LINES") else { return };

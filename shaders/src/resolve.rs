@@ -1,14 +1,14 @@
-//! From an embedded pass, or a source of one's own, to one plain WGSL text.
+//! Resolution of an embedded pass, or of an application's shader, into one plain WGSL text.
 //!
-//! 1. `token` and `code` read a file into tokens with matched brackets; `embedded` keeps those of embedded files.
-//! 2. `condition` leaves out what `@if` attributes switch off.
+//! 1. `token` and `code` read a file into tokens with matched brackets; `embedded` caches the tokens of embedded files.
+//! 2. `condition` removes items that `@if` attributes switch off.
 //! 3. `module` finds imports and declarations.
-//! 4. `link` follows imports and writes the declarations that entry points reach, each under a comment with the file and
-//!    line it came from. Bindings of effects get numbers behind those of the pass.
-//! 5. `check` validates the text with naga and traces its complaints back to the author's line.
+//! 4. `link` follows imports and writes the declarations that entry points reach, each below a comment with its file
+//! and line. It numbers the bindings of effects after those of the pass.
+//! 5. `check` validates the text with naga and maps errors back to the author's lines.
 //!
-//! Names are kept as written, so errors, captures and reflection show the author's names; the names of all shared files
-//! are unique (a test sees to it), and two files of one shader that declare the same name are an error.
+//! Names are kept as written, so errors, captures and reflection show the author's names. Names of shared files are
+//! unique, which a test verifies. Two files of one shader that declare the same name are an error.
 
 mod check;
 mod code;
@@ -26,10 +26,10 @@ use self::fault::Fault;
 use crate::effect::{self, Effect, SOCKET};
 use crate::{Feature, Features, Module, Reflection, ShaderError, library};
 
-/// A resolved shader: validated by naga, ready for `wgpu::Device::create_shader_module`.
+/// Resolved shader: validated by naga, ready for `wgpu::Device::create_shader_module`.
 #[derive(Clone, Debug)]
 pub struct Shader {
-    /// Plain WGSL. The same module, features and effects give the same bytes, in this run and the next.
+    /// Plain WGSL. The text is deterministic: the same module, features and effects always give the same bytes.
     pub wgsl: String,
     /// Entry points, bindings and override constants.
     pub reflection: Reflection,
@@ -39,12 +39,13 @@ fn read(text: &str) -> Result<Cow<'_, Code<'_>>, Fault> {
     Code::new(text).map(Cow::Owned)
 }
 
-/// Resolves a shader with `features`, ending with `effects` in this order. Features that it does not test make no
-/// difference.
+/// Resolves a shader with `features`, ending with `effects` in this order. Features that the shader does not test have
+/// no effect.
 ///
 /// # Errors
-/// With file and line where the shader, an effect, or something that they import is wrong. Also when a feature is unknown;
-/// when two effects have one name; when there are effects and the shader does not end with the socket for them,
+///
+/// With file and line if the shader, an effect or an imported file is invalid. Also if a feature is unknown or two
+/// effects share a name. Also if effects are given and the shader does not end with the socket
 /// `package::interface::epilogue`.
 pub fn resolve(module: &Module<'_>, features: &Features, effects: &[Effect<'_>]) -> Result<Shader, ShaderError> {
     let known = |name: &str| Feature::all().chain(module.features.iter().copied()).any(|f| f.name() == name);

@@ -2,57 +2,57 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// What glows, and where the picture is.
+/// Settings of the first bloom pass, which extracts bright pixels.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct BloomUniforms {
-    /// Size of what the coordinates span, in texels of the picture.
+    /// Size of the area that the coordinates span, in texels of the source.
     pub span_px: [f32; 2],
-    /// Where in it the picture begins, in texels.
+    /// Position of the image in that area, in texels.
     pub begin_px: [f32; 2],
-    /// Brightness from which on something glows.
+    /// Brightness threshold of the glow.
     pub threshold: f32,
-    /// 1: all of what is bright enough glows. 0: what is above the threshold.
+    /// 1: a texel above the threshold glows with its full brightness. 0: only the excess over the threshold glows.
     pub hard: f32,
-    /// One over the brightness that bright glow nears; 0 for none.
+    /// Reciprocal of the maximum brightness of the glow; 0 for no limit.
     pub per_highlight: f32,
-    /// 1: only what is above the threshold glows. 0: everything does.
+    /// 1: only texels above the threshold glow. 0: all texels glow.
     pub thresholds: f32,
-    /// 1: single bright texels count less. 0: they count fully.
+    /// 1: reduces the weight of single bright texels. 0: weights all texels equally.
     pub fireflies: f32,
     /// Padding to 48 bytes; zero.
     pub _pad: [f32; 3],
 }
 
-/// Ghosts, halo and rays of a lens flare.
+/// Settings of a lens flare: ghosts, halo and star rays.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct FlareUniforms {
-    /// Width over height.
+    /// Aspect ratio, width over height.
     pub aspect: f32,
-    /// How far apart red and blue are, in shares of the picture.
+    /// Chromatic aberration: distance between red and blue, as a fraction of the image size.
     pub aberration: f32,
-    /// How many ghosts.
+    /// Number of ghosts.
     pub ghosts: f32,
-    /// Between ghosts, in shares of the way to the middle.
+    /// Distance between ghosts, as a fraction of the distance to the center.
     pub ghost_spacing: f32,
-    /// Brightness from which on there are ghosts.
+    /// Brightness threshold of ghosts.
     pub ghost_threshold: f32,
-    /// In shares of the height.
+    /// Radius of the halo, as a fraction of the height.
     pub halo_radius: f32,
-    /// In shares of the height; 0: there is none.
+    /// Thickness of the halo, as a fraction of the height; 0 for no halo.
     pub halo_thickness: f32,
-    /// Brightness from which on there is a halo.
+    /// Brightness threshold of the halo.
     pub halo_threshold: f32,
-    /// From texel to texel of the blur, in texels.
+    /// Step of the blur, in texels.
     pub axis: [f32; 2],
-    /// How far rays are turned.
+    /// Rotation of the star rays.
     pub turn: f32,
-    /// 1: there are rays. 0: all is left.
+    /// 1: draws star rays. 0: leaves the flare unchanged.
     pub rays: f32,
-    /// Factor from coordinates of what glows to those of the span that the flare is centered in.
+    /// Scale from coordinates of the bloom texture to coordinates of the area in which the flare is centered.
     pub span_scale: [f32; 2],
-    /// Summand after the factor.
+    /// Offset that is added after `span_scale`.
     pub span_offset: [f32; 2],
 }
 
@@ -60,17 +60,17 @@ pub struct FlareUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct BloomMixUniforms {
-    /// What of the glow is added.
+    /// Weight of the glow.
     pub glow: f32,
-    /// What of the picture is left.
+    /// Weight of the image.
     pub picture: f32,
-    /// What of the flare is added.
+    /// Weight of the flare.
     pub flare: f32,
-    /// Factor on the dirt.
+    /// Factor on the lens dirt.
     pub dirt: f32,
-    /// Where in what the glow spans the picture begins, in pixels.
+    /// Position of the image in the area of the bloom texture, in pixels.
     pub begin_px: [f32; 2],
-    /// One over the size of what the glow spans, in 1/pixels.
+    /// Reciprocal of the size of that area, in 1/pixels.
     pub per_px: [f32; 2],
 }
 

@@ -3,23 +3,23 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 
-/// Lens and steps of depth of field.
+/// Settings of depth of field.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct DofUniforms {
-    /// What z and w of clip space are made of.
+    /// Coefficients of z and w in clip space, from which distance is computed.
     pub depth_row: Vec4,
-    /// The largest radius before and behind what is in focus, in pixels.
+    /// Maximum radius of the circle of confusion in front of and behind the focus plane, in pixels.
     pub most_px: [f32; 2],
-    /// One over the size of the picture, in 1/pixels.
+    /// Reciprocal of the image size, in 1/pixels.
     pub per_px: [f32; 2],
-    /// What is in focus, in m.
+    /// Focus distance, in m.
     pub focus_m: f32,
-    /// Diameter of what is infinitely far away, in pixels.
+    /// Diameter of the circle of confusion at infinity, in pixels.
     pub scale_px: f32,
-    /// Texels of the gather to a tile.
+    /// Width and height of a tile, in texels of the gather.
     pub tile_texels: f32,
-    /// The last level there is.
+    /// Number of the last mip level.
     pub last_level: f32,
 }
 

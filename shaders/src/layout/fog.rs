@@ -3,35 +3,35 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// The fog of a view.
+/// Fog of a view.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct FogUniforms {
-    /// Pre-exposed radiance, linear Rec.709; or a tint of the environment's.
+    /// Pre-exposed radiance, linear Rec.709; a tint if `of_environment` is 1.
     pub color: Vec3,
     /// Density at the eye, in 1/m.
     pub density: f32,
-    /// How fast density falls with height, in 1/m.
+    /// Height falloff of the density, in 1/m.
     pub falloff: f32,
-    /// Where fog begins, in m from the eye.
+    /// Distance from the eye at which fog begins, in m.
     pub start_m: f32,
-    /// What is farther away is not in fog.
+    /// Distance beyond which surfaces have no fog, in m.
     pub cut_off_m: f32,
-    /// The most that it hides, 0…1.
+    /// Maximum opacity, 0…1.
     pub most_opacity: f32,
-    /// Where the sun's light begins to be scattered, in m from the eye.
+    /// Distance from the eye at which in-scattering of sunlight begins, in m.
     pub glow_start_m: f32,
-    /// Exponent of the glow about the sun, above 0.
+    /// Exponent of the sun's glow, above 0.
     pub glow_size: f32,
-    /// 1: there is a glow. 0: there is none.
+    /// 1: adds the sun's glow. 0: no glow.
     pub glows: f32,
-    /// 1: density where fog begins counts. 0: as Filament has it.
+    /// 1: uses the density where fog begins. 0: as in Filament.
     pub exact: f32,
-    /// 1: the color is the environment's. 0: it is not.
+    /// 1: takes the color from the environment. 0: uses `color` alone.
     pub of_environment: f32,
-    /// One over the distance from which on the environment is blurred less by `sharp_levels`, in 1/m.
+    /// Reciprocal of the distance at which the environment is `sharp_levels` sharper, in 1/m.
     pub per_sharp_m: f32,
-    /// Levels by which it is blurred less from that distance on.
+    /// Number of mip levels by which the environment gets sharper with distance.
     pub sharp_levels: f32,
     /// Padding to 16 bytes; zero.
     pub _pad: f32,

@@ -5,16 +5,15 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 
 /// Camera, sun and ambient light of one view.
 ///
-/// Lights are pre-exposed: photometric quantities times [`exposure`](Self::exposure),
-/// multiplied in f32 on the CPU.
+/// Lights are pre-exposed: photometric quantities are multiplied by [`exposure`](Self::exposure) in f32 on the CPU.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct FrameUniforms {
-    /// Clip space to world.
+    /// Clip-to-world matrix.
     pub world_from_clip: Mat4,
-    /// World to clip space, reversed-Z.
+    /// World-to-clip matrix, reversed-Z.
     pub clip_from_world: Mat4,
-    /// View to world space.
+    /// View-to-world matrix.
     pub world_from_view: Mat4,
     /// Perspective: (position in m, 1). Orthographic: (unit vector toward the viewer, 0).
     pub camera: Vec4,
@@ -22,7 +21,7 @@ pub struct FrameUniforms {
     pub sun_direction: Vec3,
     /// Angular radius of the sun's disc in radians.
     pub sun_angular_radius: f32,
-    /// Pre-exposed illuminance, linear Rec.709; zero for no sun.
+    /// Pre-exposed illuminance of the sun, linear Rec.709; zero without a sun.
     pub sun_illuminance: Vec3,
     /// 1 / (1.2 · 2^EV100), in 1/nits.
     pub exposure: f32,
@@ -41,8 +40,9 @@ pub struct FrameUniforms {
     /// Pre-exposed irradiance / π in 18 coefficients; w is unused. See
     /// [`irradiance_sh5`](crate::reference::sh::irradiance_sh5).
     pub sh: [Vec4; 18],
-    /// Scale and offset that take the binary logarithm of a blended surface's distance ahead, in m, to −1…1; then bias and
-    /// overestimation of moments ([`moment_transmittance`](crate::reference::moment_transparency::moment_transmittance)).
+    /// Scale and offset that map the binary logarithm of a blended surface's distance, in m, to −1…1. Then bias and
+    /// overestimation of moments
+    /// ([`moment_transmittance`](crate::reference::moment_transparency::moment_transmittance)).
     pub blended: Vec4,
 }
 

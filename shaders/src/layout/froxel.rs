@@ -2,19 +2,19 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// How a view is cut into froxels.
+/// Division of a view into froxels.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct FroxelUniforms {
-    /// Tiles across and down, and slices.
+    /// Number of tiles in x and y, and of depth slices.
     pub counts: [u32; 3],
     /// One over the side of a tile, in 1/pixel.
     pub tiles_per_px: f32,
-    /// One over log2 of the ratio of the distances at which a slice ends and begins.
+    /// Reciprocal of log2 of the ratio between the end and the start of a slice.
     pub slice_scale: f32,
-    /// The number of slices minus log2 of the last end times `slice_scale`.
+    /// Number of slices minus log2 of the end of the last slice times `slice_scale`.
     pub slice_offset: f32,
-    /// How many lights are in no list, since they are to be looked at everywhere: the first ones.
+    /// Number of lights that affect the whole view and are in no list. They come first.
     pub everywhere: u32,
     /// Padding to 16 bytes; zero.
     pub _pad: u32,

@@ -4,62 +4,62 @@ use crate::reference::grade::Grade;
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, Vec3, Vec4};
 
-/// Settings of the effect `grade`: those of [`Grade`].
+/// Settings of the effect `grade`, packed from [`Grade`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GradingUniforms {
-    /// Columns; w is unused.
+    /// Columns of [`Grade::into`]; w is unused.
     pub into: [Vec4; 3],
-    /// Columns; w is unused.
+    /// Columns of [`Grade::mixer`]; w is unused.
     pub mixer: [Vec4; 3],
-    /// Columns; w is unused.
+    /// Columns of [`Grade::out_of`]; w is unused.
     pub out_of: [Vec4; 3],
-    /// [`Grade::ranges`].
+    /// Copy of [`Grade::ranges`].
     pub ranges: Vec4,
-    /// [`Grade::weights`].
+    /// Copy of [`Grade::weights`].
     pub weights: Vec3,
-    /// [`Grade::exposure`].
+    /// Copy of [`Grade::exposure`].
     pub exposure: f32,
-    /// The first of [`Grade::tones`].
+    /// First entry of [`Grade::tones`].
     pub shadows: Vec3,
-    /// [`Grade::night`].
+    /// Copy of [`Grade::night`].
     pub night: f32,
-    /// The second of [`Grade::tones`].
+    /// Second entry of [`Grade::tones`].
     pub midtones: Vec3,
-    /// [`Grade::contrast`].
+    /// Copy of [`Grade::contrast`].
     pub contrast: f32,
-    /// The third of [`Grade::tones`].
+    /// Third entry of [`Grade::tones`].
     pub highlights: Vec3,
-    /// [`Grade::vibrance`].
+    /// Copy of [`Grade::vibrance`].
     pub vibrance: f32,
-    /// [`Grade::slope`].
+    /// Copy of [`Grade::slope`].
     pub slope: Vec3,
-    /// [`Grade::saturation`].
+    /// Copy of [`Grade::saturation`].
     pub saturation: f32,
-    /// [`Grade::offset`].
+    /// Copy of [`Grade::offset`].
     pub offset: Vec3,
     /// Padding; zero.
     pub _pad0: f32,
-    /// [`Grade::power`].
+    /// Copy of [`Grade::power`].
     pub power: Vec3,
     /// Padding; zero.
     pub _pad1: f32,
-    /// [`Grade::shadow_gamma`].
+    /// Copy of [`Grade::shadow_gamma`].
     pub shadow_gamma: Vec3,
     /// Padding; zero.
     pub _pad2: f32,
-    /// [`Grade::middle`].
+    /// Copy of [`Grade::middle`].
     pub middle: Vec3,
     /// Padding; zero.
     pub _pad3: f32,
-    /// [`Grade::highlight_scale`].
+    /// Copy of [`Grade::highlight_scale`].
     pub highlight_scale: Vec3,
     /// Padding; zero.
     pub _pad4: f32,
 }
 
 impl GradingUniforms {
-    /// Packs what was worked out.
+    /// Packs the computed values of a grade.
     pub fn new(grade: &Grade) -> Self {
         let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.as_vec3().extend(0.0));
         let [shadows, midtones, highlights] = grade.tones.map(|tone| tone.as_vec3());

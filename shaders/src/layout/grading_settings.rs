@@ -1,30 +1,30 @@
-//! Color grading as an author sets it.
+//! Color grading settings.
 
 use glam::{Vec3, Vec4};
 
-/// Color grading as an author sets it, in Filament's terms and order; the default changes nothing.
+/// Color grading settings, in Filament's terms and order; the default changes nothing.
 ///
-/// Colors are linear in Rec.2020, except that `slope`, `offset`, `power` and `contrast` are of its LogC.
+/// Colors are linear Rec.2020, except `slope`, `offset`, `power` and `contrast`, which apply to LogC values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Grading {
-    /// Factor on light, in EV.
+    /// Exposure compensation in EV.
     pub exposure_ev: f32,
-    /// How far the eye is adapted to the night, 0…1: colors turn toward blue in the dark.
+    /// Night adaptation, 0…1: dark colors shift toward blue.
     pub night: f32,
     /// White balance from blue (-1) to amber (1); 0 changes nothing.
     pub temperature: f32,
     /// White balance from green (-1) to magenta (1); 0 changes nothing.
     pub tint: f32,
-    /// Shares of red, green and blue in the red, the green and the blue that come out, each -2…2.
+    /// Channel mixer: the shares of red, green and blue in the output red, green and blue, each -2…2.
     pub mixer: [Vec3; 3],
-    /// Factor on what is dark, a color and in w what is added to all of its channels.
+    /// Shadows: color factor in xyz; w is added to all channels.
     pub shadows: Vec4,
-    /// The same of what is between.
+    /// Midtones: color factor in xyz; w is added to all channels.
     pub midtones: Vec4,
-    /// The same of what is bright.
+    /// Highlights: color factor in xyz; w is added to all channels.
     pub highlights: Vec4,
-    /// By luminance, 0…1: shadows end between the first two, highlights begin between the last two.
+    /// Luminance limits, 0…1. Shadows fade out between the first two, highlights fade in between the last two.
     pub ranges: Vec4,
     /// Factor on the LogC value of each channel (ASC CDL slope), above 0.
     pub slope: Vec3,
@@ -32,15 +32,15 @@ pub struct Grading {
     pub offset: Vec3,
     /// Exponent of the LogC value of each channel, above 0 (ASC CDL power).
     pub power: Vec3,
-    /// Factor on the distance from middle grey (0.4135884) in LogC, 0…2.
+    /// Contrast: factor on the distance from middle gray (0.4135884) in LogC, 0…2.
     pub contrast: f32,
-    /// Saturation of reds, less of other colors, 0…2; 1 changes nothing.
+    /// Saturation that affects reds more than other colors, 0…2; 1 changes nothing.
     pub vibrance: f32,
-    /// Saturation, from 0 for grey to 2; 1 changes nothing.
+    /// Saturation, from 0 for gray to 2; 1 changes nothing.
     pub saturation: f32,
     /// Exponent of each channel below `middle`, above 0.
     pub shadow_gamma: Vec3,
-    /// Where the dark part of each channel's curve ends, above 0.
+    /// Value that separates the dark from the bright part of each channel's curve, above 0.
     pub middle: Vec3,
     /// Slope of each channel above `middle`.
     pub highlight_scale: Vec3,
@@ -69,7 +69,7 @@ impl Grading {
         highlight_scale: Vec3::ONE,
     };
 
-    /// Whether no channel depends on another, in primaries that are those of the light.
+    /// Returns true if every output channel depends only on the same input channel, in the primaries of the light.
     pub fn keeps_channels_apart(&self) -> bool {
         let own = Self {
             exposure_ev: self.exposure_ev,
@@ -97,7 +97,7 @@ impl Default for Grading {
 mod tests {
     use super::*;
 
-    /// Filament's `ColorGrading::Builder`: what each number is that changes nothing, and the ranges of its default.
+    /// Verifies neutral values and default ranges against Filament's `ColorGrading::Builder`.
     #[test]
     fn neutral_settings_are_filaments() {
         let n = Grading::NEUTRAL;

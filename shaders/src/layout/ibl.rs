@@ -3,28 +3,28 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec4;
 
-/// Rows of [`IblKernelUniforms`]: 64 KiB, what WebGPU guarantees for uniform buffers.
+/// Number of rows of [`IblKernelUniforms`]: 64 KiB, the minimum limit of uniform buffers in WebGPU.
 pub const IBL_KERNEL_ROWS: usize = 4096;
 
-/// Settings of one draw of `wgsl/pass/ibl.wgsl`, which fills one face and level of a cube.
+/// Settings of one draw of `wgsl/pass/ibl.wgsl`, which fills one face and mip level of a cube map.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct IblUniforms {
-    /// Face of the cube, 0…5.
+    /// Face of the cube map, 0…5.
     pub face: u32,
     /// Width and height of the target in texels.
     pub size_texels: u32,
-    /// `fs_cube`: samples along each side of a texel; `fs_prefilter`: rows of the kernel in use.
+    /// `fs_cube`: samples along each side of a texel. `fs_prefilter`: number of kernel rows in use.
     pub samples: u32,
-    /// Factor on the result, without unit.
+    /// Dimensionless factor on the result.
     pub scale: f32,
 }
 
-/// Sample directions of a GGX lobe about the normal.
+/// Sample directions of a GGX lobe around the normal.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct IblKernelUniforms {
-    /// Unit direction about +Z in xyz, whose z is also the weight; mip level of the cube to read in w.
+    /// xyz: unit direction around +Z, with z also the weight. w: mip level of the cube map.
     pub rows: [Vec4; IBL_KERNEL_ROWS],
 }
 

@@ -1,4 +1,4 @@
-//! Mirror of `LightUniforms`, and its making from KHR_lights_punctual.
+//! Mirror of `LightUniforms`, and its creation from KHR_lights_punctual.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -9,11 +9,11 @@ use glam::Vec3;
 pub struct LightUniforms {
     /// Position in m; unused by directional lights.
     pub position: Vec3,
-    /// 1/range² in 1/m²; zero for an unlimited range.
+    /// Reciprocal of the squared range, in 1/m²; zero for unlimited range.
     pub inv_range2: f32,
     /// Pre-exposed luminous intensity in candela, or illuminance in lux for directional lights; linear Rec.709.
     pub intensity: Vec3,
-    /// 0 directional, 1 point, 2 spot.
+    /// Light type: 0 directional, 1 point, 2 spot.
     pub kind: u32,
     /// Unit vector the light travels along; unused by point lights.
     pub direction: Vec3,
@@ -21,37 +21,36 @@ pub struct LightUniforms {
     pub spot_scale: f32,
     /// Spot lights: -cos outer · `spot_scale`.
     pub spot_offset: f32,
-    /// Number of the light's first shadow map among those of local lights, counted from 1; 0: it
-    /// casts none.
+    /// Number of the light's first shadow map, starting at 1; 0 if the light casts no shadows.
     pub shadow_map: u32,
-    /// Darkness of the light's shadows, 0…1; 1 as [`LightUniforms::punctual`] makes it.
+    /// Shadow strength, 0…1; [`LightUniforms::punctual`] sets 1.
     pub shadow_strength: f32,
     /// Light channels in bits 0 to 7.
     pub channels: u32,
 }
 
-/// Shape of a punctual light, as KHR_lights_punctual has it.
+/// Shape of a punctual light, as in KHR_lights_punctual.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Punctual {
     /// Parallel light; its intensity is an illuminance in lux.
     Directional {
-        /// The way it travels; need not be normalized.
+        /// Direction of travel; need not be normalized.
         direction: Vec3,
     },
-    /// Light from a point, of equal intensity in all directions, in candela.
+    /// Point light of equal intensity in all directions, in candela.
     Point {
         /// Position in m.
         position: Vec3,
-        /// Distance in m at which it has faded to zero; `None` for an unlimited range.
+        /// Distance in m at which the light has faded to zero; `None` for unlimited range.
         range_m: Option<f32>,
     },
-    /// Intensity in candela on the axis, fading between two cones.
+    /// Spot light: intensity in candela along the axis, fading between two cones.
     Spot {
         /// Position in m.
         position: Vec3,
-        /// The axis, the way it travels; need not be normalized.
+        /// Direction of travel along the axis; need not be normalized.
         direction: Vec3,
-        /// Distance in m at which it has faded to zero; `None` for an unlimited range.
+        /// Distance in m at which the light has faded to zero; `None` for unlimited range.
         range_m: Option<f32>,
         /// Half angle of the cone of full intensity, in radians; 0 ≤ inner < outer.
         inner_cone_rad: f32,
@@ -60,18 +59,18 @@ pub enum Punctual {
     },
 }
 
-/// Why a light cannot be used.
+/// Error for an invalid light.
 #[derive(Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LightError {
-    /// Position, direction or color is NaN or infinite, or intensity is negative.
+    /// A position, direction or color is NaN or infinite, or an intensity is negative.
     #[error("light has a {what} of {value}; finite and not negative is needed")]
     Value {
-        /// Which property.
+        /// Name of the property.
         what: &'static str,
-        /// Its value.
+        /// Invalid value.
         value: f32,
     },
-    /// A direction of length zero.
+    /// The direction has length zero.
     #[error("light has a direction of length zero")]
     Direction,
     /// The cone angles are out of order or range.
@@ -91,12 +90,13 @@ impl std::fmt::Debug for LightError {
 }
 
 impl LightUniforms {
-    /// Packs a light. `color` is linear Rec.709, `intensity` lux for directional lights and
-    /// candela for others, `exposure` in 1/nits; they are multiplied here, in f32.
+    /// Packs a light. `color` is linear Rec.709, `intensity` is in lux for directional lights and candela for others,
+    /// and `exposure` is in 1/nits. They are multiplied here, in f32.
     ///
     /// # Errors
-    /// If a value is not finite, a range is not positive, a direction has no length, or the
-    /// cone is not one.
+    ///
+    /// If a value is not finite, a range is not positive, a direction has zero length, or the cone angles are out of
+    /// order.
     pub fn punctual(shape: Punctual, color: Vec3, intensity: f32, exposure: f32) -> Result<Self, LightError> {
         for (what, value) in [("color", color.min_element()), ("intensity", intensity)] {
             finite_positive(what, value, 0.0)?;
@@ -113,7 +113,7 @@ impl LightUniforms {
                 if !(0.0 <= inner && inner <= outer && outer <= 1.570_797) {
                     return Err(LightError::Cone { inner, outer });
                 }
-                // Cosines of small angles differ little: the difference is taken in f64.
+                // Cosines of small angles are nearly equal, so the difference is computed in f64.
                 let (cos_inner, cos_outer) = (f64::from(inner).cos(), f64::from(outer).cos());
                 let scale = 1.0 / (cos_inner - cos_outer).max(1e-3);
                 Ok(Self {

@@ -1,29 +1,31 @@
-//! Mirror of `wgsl/interface/material_uniforms.wgsl` and of the traits in `wgsl/interface/material.wgsl`. The uniforms of lobes that a material lacks hold their defaults and are not
-//! read.
+//! Mirror of `wgsl/interface/material_uniforms.wgsl` and of the traits in `wgsl/interface/material.wgsl`. The uniforms
+//! of lobes that a material lacks hold their defaults and are not read.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
 
-/// Number of textures that a material can have: slot `i` is bit `i` of the constant `MATERIAL_TRAITS`.
+/// Maximum number of textures of a material. Texture slot `i` is bit `i` of the constant `MATERIAL_TRAITS`.
 pub const MATERIAL_SLOTS: u32 = 19;
-/// Number of the bit of the constant `MATERIAL_TRAITS` of a material that emits light. Below are those of textures.
+/// Bit number in `MATERIAL_TRAITS` for materials that emit light. Lower bits are texture slots.
 pub const TRAIT_EMITS: u32 = MATERIAL_SLOTS;
-/// Number of the bit of one whose back faces are drawn and shaded with reversed normals.
+/// Bit number in `MATERIAL_TRAITS` for double-sided materials, whose back faces are shaded with reversed normals.
 pub const TRAIT_DOUBLE_SIDED: u32 = MATERIAL_SLOTS + 1;
-/// Number of the bit of one whose base color is shown as it is (KHR_materials_unlit).
+/// Bit number in `MATERIAL_TRAITS` for unlit materials (KHR_materials_unlit).
 pub const TRAIT_UNLIT: u32 = MATERIAL_SLOTS + 2;
-/// Number of the bit of one all textures of which are looked up by set 0 of texture coordinates as it is.
+/// Bit number in `MATERIAL_TRAITS` for materials whose textures all use texture coordinate set 0 without a transform.
 pub const TRAIT_PLAIN_UV: u32 = MATERIAL_SLOTS + 3;
-/// Number of the bit of one whose occlusion is in red of its metallic-roughness texture, looked up alike.
+/// Bit number in `MATERIAL_TRAITS` for materials whose occlusion is the red channel of the metallic-roughness texture,
+/// with the same texture coordinates.
 pub const TRAIT_PACKED_OCCLUSION: u32 = MATERIAL_SLOTS + 4;
-/// Number of the bit of lines and points, which have no plane to take a normal from. It is of meshes, not of materials.
+/// Bit number in `MATERIAL_TRAITS` for lines and points, which have no geometric normal. Set by the mesh, not by the
+/// material.
 pub const TRAIT_NO_AREA: u32 = MATERIAL_SLOTS + 5;
-/// Bit of `MATERIAL_TRAITS`: the base under the clear coat keeps its reflectance in air.
+/// Bit number in `MATERIAL_TRAITS` for materials whose base keeps its reflectance in air under the clear coat.
 pub const TRAIT_COAT_KEEPS_F0: u32 = MATERIAL_SLOTS + 6;
-/// Bit of `MATERIAL_TRAITS`: the surface is seen where the sun is in shadow alone.
+/// Bit number in `MATERIAL_TRAITS` for shadow catchers, which are visible only where the sun is in shadow.
 pub const TRAIT_SHADOW_CATCHER: u32 = MATERIAL_SLOTS + 7;
 
-/// How texture coordinates of the mesh lead to a texture (KHR_texture_transform); that of no texture is not read.
+/// Mapping from the mesh's texture coordinates to a texture (KHR_texture_transform). Not read without a texture.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct TextureMap {
@@ -33,7 +35,7 @@ pub struct TextureMap {
     pub y_axis: Vec2,
     /// Translation in texture coordinates, applied last.
     pub offset: Vec2,
-    /// Texture coordinate set of the mesh, 0 or 1.
+    /// Number of the mesh's texture coordinate set, 0 or 1.
     pub uv_set: u32,
     /// Padding to 8 bytes; zero.
     pub _pad: u32,
@@ -46,26 +48,26 @@ impl Default for TextureMap {
 }
 
 impl TextureMap {
-    /// Set 0 as it is.
+    /// Texture coordinate set 0 without a transform.
     pub const IDENTITY: Self = Self { x_axis: Vec2::X, y_axis: Vec2::Y, offset: Vec2::ZERO, uv_set: 0, _pad: 0 };
 
-    /// A texture with the transform of KHR_texture_transform, offset · rotation · scale:
-    /// `rotation_rad` counter-clockwise in texture space, whose v runs downward.
+    /// Creates the mapping of KHR_texture_transform, offset · rotation · scale. `rotation_rad` is counter-clockwise in
+    /// texture space, whose v axis points down.
     pub fn new(uv_set: u32, offset: Vec2, rotation_rad: f32, scale: Vec2) -> Self {
         let (sin, cos) = rotation_rad.sin_cos();
         Self { x_axis: Vec2::new(cos, -sin) * scale.x, y_axis: Vec2::new(sin, cos) * scale.y, offset, uv_set, _pad: 0 }
     }
 }
 
-/// Factors of a glTF metallic-roughness material and of its lobes.
+/// Factors of a glTF metallic-roughness material and its lobes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct MaterialUniforms {
     /// Base color factor, linear Rec.709, with straight (not premultiplied) alpha.
     pub base_color: Vec4,
-    /// Emitted radiance, linear Rec.709, emissive strength included.
+    /// Emitted radiance, linear Rec.709, including the emissive strength.
     pub emissive: Vec3,
-    /// 1 where `emissive` is in nits and exposed; 0 where it is a display value that is not.
+    /// 1: `emissive` is in nits and is multiplied by the exposure. 0: `emissive` is a display value.
     pub emissive_exposure_weight: f32,
     /// Metalness, from 0 for dielectrics to 1 for metals.
     pub metallic: f32,
@@ -75,11 +77,11 @@ pub struct MaterialUniforms {
     pub normal_scale: f32,
     /// Strength of the occlusion texture, 0…1.
     pub occlusion_strength: f32,
-    /// Alpha mode MASK: fragments with less alpha are discarded.
+    /// Alpha threshold of mode MASK: fragments with lower alpha are discarded.
     pub alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of refraction of 1.5.
     pub dielectric_f0: f32,
-    /// Strength of the shadow that a shadow catcher shows, 0…1.
+    /// Strength of the shadow on a shadow catcher, 0…1.
     pub catcher_strength: f32,
     /// Padding to 16 bytes; zero.
     pub _pad: u32,
@@ -99,7 +101,8 @@ pub struct MaterialUniforms {
     pub sheen: SheenUniforms,
     /// Anisotropy; read with the feature `ANISOTROPY`.
     pub anisotropy: AnisotropyUniforms,
-    /// Transmission and volume; read with the feature `TRANSMISSION`, the volume with `DIFFUSE_TRANSMISSION` too.
+    /// Transmission and volume; read with the feature `TRANSMISSION`. The volume is also read with
+    /// `DIFFUSE_TRANSMISSION`.
     pub transmission: TransmissionUniforms,
     /// Dielectric specular reflection; read with the feature `SPECULAR`.
     pub specular: SpecularUniforms,
@@ -107,11 +110,11 @@ pub struct MaterialUniforms {
     pub iridescence: IridescenceUniforms,
     /// Diffuse transmission; read with the feature `DIFFUSE_TRANSMISSION`.
     pub diffuse_transmission: DiffuseTransmissionUniforms,
-    /// Light scattered below the surface; read with the features `SUBSURFACE` and `CLOTH_SUBSURFACE`.
+    /// Subsurface scattering; read with the features `SUBSURFACE` and `CLOTH_SUBSURFACE`.
     pub subsurface: SubsurfaceUniforms,
 }
 
-/// Light scattered below the surface (Filament's shading models `subsurface` and `cloth`).
+/// Subsurface scattering (Filament's shading models `subsurface` and `cloth`).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SubsurfaceUniforms {
@@ -119,9 +122,9 @@ pub struct SubsurfaceUniforms {
     pub color: Vec3,
     /// Exponent of the lobe toward lights behind the surface, 0 or more.
     pub power: f32,
-    /// Color of light that is scattered in cloth, linear Rec.709, 0…1.
+    /// Subsurface color of cloth, linear Rec.709, 0…1.
     pub cloth_color: Vec3,
-    /// Thickness, from 0 for none to 1, through which nothing passes.
+    /// Thickness, from 0 for thin to 1 for opaque.
     pub thickness: f32,
 }
 
@@ -214,13 +217,13 @@ pub struct SpecularUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct IridescenceUniforms {
-    /// Share of the surface under the film, 0…1.
+    /// Coverage of the surface by the film, 0…1.
     pub factor: f32,
     /// Index of refraction of the film, 1 or more.
     pub ior: f32,
-    /// Thickness in nm where its texture is 0.
+    /// Film thickness in nm at texture value 0.
     pub min_thickness_nm: f32,
-    /// Thickness in nm where its texture is 1, and without one.
+    /// Film thickness in nm at texture value 1, or without a texture.
     pub max_thickness_nm: f32,
     /// Texture of the factor.
     pub map: TextureMap,
@@ -232,9 +235,9 @@ pub struct IridescenceUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct DiffuseTransmissionUniforms {
-    /// Albedo of the light that leaves on the other side, linear Rec.709.
+    /// Albedo of the light that leaves through the back, linear Rec.709.
     pub color: Vec3,
-    /// Share of the scattered light that leaves on the other side, 0…1.
+    /// Share of the scattered light that leaves through the back, 0…1.
     pub factor: f32,
     /// Texture of the factor.
     pub map: TextureMap,
@@ -243,8 +246,8 @@ pub struct DiffuseTransmissionUniforms {
 }
 
 impl Default for MaterialUniforms {
-    /// The defaults of glTF 2.0, but for `metallic`, which is 0 here: without a texture glTF's
-    /// 1 makes everything a metal, and importers always set it.
+    /// Returns the defaults of glTF 2.0, except `metallic`, which is 0. The glTF default of 1 turns materials without a
+    /// texture into metals, and importers always set it.
     fn default() -> Self {
         Self {
             base_color: Vec4::ONE,
@@ -320,7 +323,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
 mod tests {
     use super::*;
 
-    /// The matrix product that KHR_texture_transform spells out.
+    /// Computes the matrix product as specified in KHR_texture_transform.
     fn khronos(uv: Vec2, offset: Vec2, rotation: f32, scale: Vec2) -> Vec2 {
         let (s, c) = rotation.sin_cos();
         let translation = glam::Mat3::from_cols(Vec3::X, Vec3::Y, offset.extend(1.0));
@@ -329,7 +332,7 @@ mod tests {
         (translation * rotation * scale * uv.extend(1.0)).truncate()
     }
 
-    /// glTF 2.0, 5.19 and 5.22 to 5.24, and KHR_materials_ior; metallic is 0 where an importer says nothing.
+    /// Verifies glTF 2.0, 5.19 and 5.22 to 5.24, and KHR_materials_ior; metallic is 0 unless an importer sets it.
     #[test]
     fn defaults_are_those_of_gltf() {
         let m = MaterialUniforms::default();

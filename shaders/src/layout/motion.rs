@@ -3,13 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 
-/// Where an instance is and was; one element an instance.
+/// Transforms of an instance in this and the previous frame; one element per instance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MotionUniforms {
-    /// Model to clip space of this frame, without jitter.
+    /// Model-to-clip matrix of this frame, without jitter.
     pub clip_from_model: Mat4,
-    /// Model to clip space of the frame before, without jitter.
+    /// Model-to-clip matrix of the previous frame, without jitter.
     pub earlier_clip_from_model: Mat4,
 }
 

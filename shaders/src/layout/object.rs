@@ -1,4 +1,4 @@
-//! Mirror of `wgsl/interface/object.wgsl`: placement of an object.
+//! Mirror of `wgsl/interface/object.wgsl`: the transform of an object.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3, Mat4, Vec3, Vec4};
@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3, Mat4, Vec3, Vec4};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ObjectUniforms {
-    /// Transform from model to world space, without the translation, which depends on the eye: shaders take it from
+    /// Model-to-world matrix without the translation. The translation depends on the eye, and shaders read it from
     /// `origins`.
     pub world_from_model: Mat4,
     /// First column of the normal matrix: cofactors of the upper 3×3, scaled to a largest entry of one, times the sign
@@ -17,7 +17,7 @@ pub struct ObjectUniforms {
     pub handedness: f32,
     /// Second column of the normal matrix.
     pub normal_column_y: Vec3,
-    /// Number of the object's material among the scene's.
+    /// Index of the object's material in the scene.
     pub material: u32,
     /// Third column of the normal matrix.
     pub normal_column_z: Vec3,
@@ -25,32 +25,32 @@ pub struct ObjectUniforms {
     pub _pad: f32,
 }
 
-/// The same and where the object is, as an element of the stream of instances.
+/// Transform and position of an object, as an element of the instance stream.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ObjectAttributes {
-    /// First column of the matrix from model to world space.
+    /// First column of the model-to-world matrix.
     pub column_x: Vec4,
-    /// Second column.
+    /// Second column of the model-to-world matrix.
     pub column_y: Vec4,
-    /// Third column.
+    /// Third column of the model-to-world matrix.
     pub column_z: Vec4,
-    /// Where the zero point of the object's mesh is, relative to the eye, in m; xyz.
+    /// Origin of the object's mesh relative to the eye in m, in xyz.
     pub origin: Vec4,
-    /// First column of the normal matrix; the sign of the determinant.
+    /// First column of the normal matrix; w is the sign of the determinant.
     pub normal_column_x: Vec4,
     /// Second column of the normal matrix.
     pub normal_column_y: Vec3,
-    /// Number of the object's material among the scene's.
+    /// Index of the object's material in the scene.
     pub material: u32,
     /// Third column of the normal matrix.
     pub normal_column_z: Vec3,
-    /// Number of the object.
+    /// Index of the object.
     pub number: u32,
 }
 
 impl ObjectAttributes {
-    /// Of the object of that number.
+    /// Packs the attributes of an object.
     #[must_use]
     pub fn new(number: u32, object: &ObjectUniforms, origin: Vec4) -> Self {
         let ObjectUniforms { world_from_model: m, handedness, material, .. } = *object;
@@ -69,13 +69,12 @@ impl ObjectAttributes {
 }
 
 impl ObjectUniforms {
-    /// Packs a transform, with the material of number 0.
+    /// Packs a transform, with material index 0.
     ///
-    /// Normals are carried by the cofactors of the upper 3×3, which exist where the inverse
-    /// transpose does not (a flattened object keeps the normal of its plane). They are formed
-    /// in f64 from the matrix divided by its largest entry, scaled to a largest entry of one
-    /// and multiplied by the sign of the determinant, so neither 1e-13 nor 1e8 over- or
-    /// underflows (accuracy, hard case 38).
+    /// Normals are transformed by the cofactors of the upper 3×3, which exist even without an inverse transpose: a
+    /// flattened object keeps the normal of its plane. The cofactors are computed in f64 from the matrix divided by its
+    /// largest entry. They are scaled to a largest entry of one and multiplied by the sign of the determinant. Scales
+    /// from 1e-13 to 1e8 therefore neither overflow nor underflow (accuracy, hard case 38).
     pub fn new(world_from_model: Mat4) -> Self {
         let m = glam::Mat3::from_mat4(world_from_model).as_dmat3();
         let m = scaled_to_one(m);
@@ -94,7 +93,7 @@ impl ObjectUniforms {
     }
 }
 
-/// The matrix over its entry of largest magnitude; the zero matrix as it is.
+/// Returns the matrix divided by its entry of largest magnitude; the zero matrix is unchanged.
 fn scaled_to_one(m: DMat3) -> DMat3 {
     let largest = |v: DVec3| v.abs().max_element();
     let largest = largest(m.x_axis).max(largest(m.y_axis)).max(largest(m.z_axis));
@@ -165,7 +164,7 @@ mod tests {
         }
     }
 
-    /// So that half floats hold them, whichever axis is the longest.
+    /// Verifies that half floats can hold the matrix, whichever axis is the longest.
     #[test]
     fn the_largest_entry_of_the_normal_matrix_is_one() {
         for scale in [[1.0, 2.0, 3.0], [3.0, 1.0, 2.0], [2.0, 3.0, 1.0], [1e4, 1e-4, 1.0], [1e-4, 1.0, 1e4]] {

@@ -4,26 +4,26 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, IVec2, Vec2, Vec4};
 
-/// The numbers of a projection, from which positions in view space are made of depth; see
+/// Coefficients of a projection, from which view-space positions are reconstructed; see
 /// [`unproject`](crate::reference::unproject).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Projection {
-    /// What z and w of clip space are made of.
+    /// Coefficients of z and w in clip space.
     pub depth: Vec4,
-    /// Factors on x and y.
+    /// Coefficients of view-space x and y in clip-space x and y.
     pub scale: Vec2,
-    /// Factors on z.
+    /// Coefficients of view-space z in clip-space x and y.
     pub slide: Vec2,
-    /// What is added.
+    /// Constant terms of clip-space x and y.
     pub offset: Vec2,
     /// Padding.
     pub _pad: Vec2,
 }
 
 impl Projection {
-    /// Of the matrix from view to clip space, whose x and y must not mix: central and parallel projections, jittered or off
-    /// the middle.
+    /// Extracts the coefficients of a view-to-clip matrix, whose x and y must be independent. Perspective and
+    /// orthographic projections qualify, with jitter or off-center.
     pub fn new(clip_from_view: &DMat4) -> Self {
         let DMat4 { x_axis, y_axis, z_axis, w_axis } = *clip_from_view;
         Self {
@@ -36,25 +36,25 @@ impl Projection {
     }
 }
 
-/// Cones toward the dominant light.
+/// Settings of cone tracing toward the dominant light.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ConeUniforms {
-    /// Length, in m.
+    /// Length of a cone, in m.
     pub reach_m: f32,
-    /// Tangent of half the angle at the tip.
+    /// Tangent of the half angle at the tip.
     pub tangent: f32,
-    /// How far in front of a cone something may be and still touch it, in m.
+    /// Maximum distance in front of a cone at which a surface counts as contact, in m.
     pub contact_m: f32,
-    /// What fills less of a slice than this, in m, fills nothing.
+    /// Depth bias, in m: surfaces that fill less of a slice are ignored.
     pub bias_m: f32,
-    /// What a surface edge-on to the light has in addition, in m.
+    /// Additional depth bias for surfaces that are edge-on to the light, in m.
     pub slope_bias_m: f32,
-    /// Factor on what is shadowed.
+    /// Factor on the occlusion.
     pub intensity: f32,
-    /// Slices of a cone.
+    /// Number of slices per cone.
     pub steps: f32,
-    /// Cones.
+    /// Number of cones.
     pub rays: f32,
 }
 
@@ -62,39 +62,39 @@ pub struct ConeUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct OcclusionUniforms {
-    /// Of the view.
+    /// Projection of the view.
     pub projection: Projection,
-    /// How far occluders count, in m.
+    /// Maximum distance of occluders, in m.
     pub radius_m: f32,
-    /// Texels of level 0 that the radius spans a meter ahead of the eye.
+    /// Size of the radius in texels of level 0, at a distance of 1 m from the eye.
     pub radius_texels: f32,
-    /// The most texels that the radius may span.
+    /// Maximum size of the radius, in texels.
     pub most_texels: f32,
-    /// Rise over the tangent plane that occludes nothing, a share of the distance from the eye.
+    /// Height above the tangent plane that occludes nothing, as a fraction of the distance from the eye.
     pub bias: f32,
-    /// Factor on what is obscured.
+    /// Factor on the obscurance.
     pub intensity: f32,
-    /// Exponent of what is not obscured.
+    /// Exponent of the visibility.
     pub power: f32,
-    /// Squared sine of the least angle over the tangent plane that occludes.
+    /// Squared sine of the minimum angle above the tangent plane that occludes.
     pub min_sin2: f32,
-    /// Number of the structure's last level.
+    /// Index of the depth pyramid's last level.
     pub last_level: i32,
-    /// Cosine and sine of the angle from tap to tap of the spiral.
+    /// Cosine and sine of the angle between taps of the spiral.
     pub tap_rotation: Vec2,
-    /// Taps of the spiral.
+    /// Number of taps in the spiral.
     pub taps: f32,
-    /// 1 / (taps - ½).
+    /// Reciprocal tap spacing, 1 / (taps - ½).
     pub per_tap: f32,
-    /// Slices.
+    /// Number of slices.
     pub slices: f32,
-    /// Steps on either side of each.
+    /// Number of steps on each side of a slice.
     pub steps: f32,
-    /// Exponent of the share of the way from step to step.
+    /// Exponent of the step distribution along a slice.
     pub step_power: f32,
-    /// How far behind its front something still occludes, in m, for a bitmask.
+    /// Thickness of occluders behind their front, in m, for the visibility bitmask.
     pub thickness_m: f32,
-    /// Toward the dominant light.
+    /// Cones toward the dominant light.
     pub cone: ConeUniforms,
 }
 
@@ -102,15 +102,15 @@ pub struct OcclusionUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct BilateralUniforms {
-    /// [`Projection::depth`].
+    /// Copy of [`Projection::depth`].
     pub depth: Vec4,
-    /// Texels from sample to sample.
+    /// Step between samples, in texels.
     pub axis: IVec2,
-    /// Distance between surfaces, in m, from which on one does not count for the other.
+    /// Distance between surfaces, in m, at which the weight reaches zero.
     pub threshold_m: f32,
     /// Padding to 16 bytes; zero.
     pub _pad: f32,
-    /// Weight of the middle, then of the samples away from it.
+    /// Weight of the center, followed by the weights of samples at increasing distance.
     pub weights: [Vec4; 4],
 }
 

@@ -13,7 +13,7 @@ pub struct ExposureUniforms {
 }
 
 impl ExposureUniforms {
-    /// Brighter by `compensation_ev` stops.
+    /// Creates settings that brighten by `compensation_ev` stops.
     pub fn new(compensation_ev: f32) -> Self {
         Self { scale: compensation_ev.exp2(), _pad: [0.0; 3] }
     }
@@ -23,16 +23,17 @@ impl ExposureUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct VignetteUniforms {
-    /// Center of the picture in pixels.
+    /// Center of the image in pixels.
     pub centre_px: [f32; 2],
-    /// One over the distance from the center to a corner, in 1/pixels.
+    /// Reciprocal of the distance from the center to a corner, in 1/pixels.
     pub per_corner_px: f32,
     /// Strength of the falloff: 2^(stops/2) - 1 for corners darker by that many stops, 0 for none.
     pub falloff: f32,
 }
 
 impl VignetteUniforms {
-    /// Corners of a picture of `size_px` that are darker than its middle by `corner_ev` stops, at least 0.
+    /// Creates settings for an image of `size_px` whose corners are darker than its center by `corner_ev` stops, at
+    /// least 0.
     pub fn new(size_px: [u32; 2], corner_ev: f32) -> Self {
         let centre_px = size_px.map(|side| side as f32 * 0.5);
         let corner_px = centre_px[0].hypot(centre_px[1]).max(0.5);
@@ -40,25 +41,25 @@ impl VignetteUniforms {
     }
 }
 
-/// A picture that fades into a color toward its edges, in Filament's terms.
+/// Vignette that fades into a color toward the edges, with Filament's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EdgeFade {
-    /// How far from the middle the fade begins, 0…1.
+    /// Distance from the center at which the fade begins, 0…1.
     pub middle: f32,
     /// From a rounded rectangle (0) over an oval (0.5) to a circle (1).
     pub roundness: f32,
     /// Softness of the fade, 0…1.
     pub feather: f32,
-    /// What the edges become, a factor on light; linear Rec.709.
+    /// Factor on light at the edges; linear Rec.709.
     pub color: [f32; 3],
-    /// The middle and the edges are those of a buffer whose sides are rounded up to a multiple of this, with the picture at
-    /// its bottom left; 1 for the picture's own. Filament renders into multiples of 16.
+    /// Multiple to which the sides of the buffer are rounded up, with the image at its bottom left. The fade spans this
+    /// buffer. 1 uses the image itself. Filament renders into multiples of 16.
     pub multiple_px: u32,
 }
 
 impl EdgeFade {
-    /// Filament's values: half of everything, to black.
+    /// Filament's defaults: 0.5 for every parameter, fading to black.
     pub const DEFAULT: Self = Self { middle: 0.5, roundness: 0.5, feather: 0.5, color: [0.0; 3], multiple_px: 1 };
 }
 
@@ -66,20 +67,20 @@ impl EdgeFade {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct EdgeFadeUniforms {
-    /// Scale of both axes, that of the horizontal alone, the power that makes corners, the power of the falloff.
+    /// Scale of both axes, scale of the horizontal axis, exponent of the corners, exponent of the falloff.
     pub shape: [f32; 4],
-    /// [`EdgeFade::color`].
+    /// Copy of [`EdgeFade::color`].
     pub color: [f32; 3],
     /// Padding; zero.
     pub _pad0: f32,
-    /// Where the middle is, in pixels.
+    /// Center of the fade, in pixels.
     pub middle_px: [f32; 2],
-    /// One over the size of what fades, in 1/pixels.
+    /// Reciprocal of the size of the fade, in 1/pixels.
     pub per_px: [f32; 2],
 }
 
 impl EdgeFadeUniforms {
-    /// A picture of `size_px`; numbers beyond their range are clamped.
+    /// Creates settings for an image of `size_px`; values out of range are clamped.
     pub fn new(size_px: [u32; 2], fade: &EdgeFade) -> Self {
         let [width, height] =
             size_px.map(|side| side.max(1).next_multiple_of(fade.multiple_px.clamp(1, 1 << 16)) as f32);
@@ -104,18 +105,18 @@ impl EdgeFadeUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct EncodingUniforms {
-    /// Amplitude of the dither in half codes of the target, 0…1.
+    /// Amplitude of the dither in half steps of the target, 0…1.
     pub dither: f32,
-    /// Largest code of the target: 255 for 8 bits a channel.
+    /// Largest integer value of the target: 255 for 8 bits per channel.
     pub dither_levels: f32,
-    /// Number of the frame, which shifts the dither pattern.
+    /// Frame number, which shifts the dither pattern.
     pub frame_index: u32,
     /// Padding to 16 bytes; zero.
     pub _pad: u32,
 }
 
 impl EncodingUniforms {
-    /// For a target of eight bits a channel.
+    /// Creates settings for a target with 8 bits per channel.
     pub fn new(dither: f32, frame_index: u32) -> Self {
         Self { dither, dither_levels: 255.0, frame_index, _pad: 0 }
     }
@@ -125,18 +126,18 @@ impl EncodingUniforms {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct FxaaUniforms {
-    /// Divides the reach of the second pair of taps: larger filters along less of the edge. 8 is usual.
+    /// Divisor of the second tap pair's distance: larger values filter a shorter part of the edge. 8 is usual.
     pub edge_sharpness: f32,
-    /// Least contrast that is filtered, as a share of the largest luma nearby.
+    /// Minimum contrast that is filtered, as a share of the largest luma nearby.
     pub edge_threshold: f32,
-    /// Least contrast that is filtered, in luma 0…1.
+    /// Minimum contrast that is filtered, in luma 0…1.
     pub edge_threshold_min: f32,
     /// Weight of the unfiltered pixel in the result, 0…1.
     pub centre_weight: f32,
 }
 
 impl Default for FxaaUniforms {
-    /// Filament's values.
+    /// Returns Filament's values.
     fn default() -> Self {
         Self { edge_sharpness: 8.0, edge_threshold: 0.08, edge_threshold_min: 0.04, centre_weight: 0.25 }
     }

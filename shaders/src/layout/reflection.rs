@@ -4,25 +4,25 @@ use super::occlusion::Projection;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2};
 
-/// Settings of reflections in what the picture shows.
+/// Settings of screen-space reflections.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ReflectionUniforms {
-    /// Of the view.
+    /// Projection of the view.
     pub projection: Projection,
-    /// View space of this frame to clip space of the frame before.
+    /// View space of this frame to clip space of the previous frame.
     pub earlier_clip_from_view: Mat4,
-    /// How far behind its front a surface is still met, in m.
+    /// Thickness assumed behind visible surfaces, in m.
     pub thickness_m: f32,
-    /// Where rays begin, in m along them.
+    /// Distance along the ray at which tracing begins, in m.
     pub bias_m: f32,
-    /// Where they end.
+    /// Distance along the ray at which tracing ends, in m.
     pub reach_m: f32,
-    /// Texels from step to step.
+    /// Distance between steps, in texels.
     pub stride: f32,
-    /// Perceptual roughness from which on nothing is traced.
+    /// Maximum perceptual roughness that is traced.
     pub most_roughness: f32,
-    /// Exposure of this frame over that of the frame before.
+    /// Exposure of this frame divided by that of the previous frame.
     pub exposure_ratio: f32,
     /// Padding.
     pub _pad: Vec2,

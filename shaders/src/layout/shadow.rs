@@ -3,97 +3,97 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
 
-/// What is the same for all shadow maps of a view, and the maps of the sun.
+/// Shadow settings of a view, and the sun's shadow maps.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ShadowUniforms {
     /// Distance ahead of the eye in m at which each cascade of the sun ends.
     pub far_ends: Vec4,
-    /// 0 PCF, 1 DPCF, 2 PCSS.
+    /// Filter of soft shadows: 0 PCF, 1 DPCF, 2 PCSS.
     pub filter_kind: u32,
     /// Width and height of a layer in texels.
     pub texels: f32,
-    /// 1/m² of the distance by which the sun's shadows have faded; 0: they do not fade.
+    /// Reciprocal of the squared distance at which the sun's shadows have faded out, in 1/m²; 0 for no fade.
     pub inv_far2: f32,
-    /// Exponent of the warp of moments.
+    /// Exponent of the depth warp for moments.
     pub exponent: f32,
-    /// Least variance of warped depth, over its square.
+    /// Minimum variance of warped depth, divided by its square.
     pub variance_floor: f32,
-    /// Share of light that is taken for bled and removed, 0…1.
+    /// Amount of light bleeding reduction, 0…1.
     pub bleed: f32,
-    /// Length of a contact shadow's ray in m.
+    /// Length of the ray for contact shadows, in m.
     pub contact_m: f32,
-    /// Darkness of the sun's shadows, 0…1.
+    /// Strength of the sun's shadows, 0…1.
     pub sun_strength: f32,
-    /// Maps of the sun; zero beyond the last.
+    /// Shadow maps of the sun's cascades; zero after the last.
     pub cascades: [ShadowMapUniforms; 4],
 }
 
-/// One shadow map as shaders read it.
+/// Shadow map as shaders read it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ShadowMapUniforms {
-    /// World to the light's clip space, reversed-Z.
+    /// World to light clip space, reversed-Z.
     pub clip_from_world: Mat4,
-    /// World to depth away from the light: 0 at the near end of the map, 1 at the far end.
+    /// World to linear depth: 0 at the near end of the map, 1 at the far end.
     pub linear_depth: Vec4,
-    /// Across the map, as long in m as receivers are offset along a normal that points there, where w = 1.
+    /// Right axis of the map. Its length is the normal offset, in m where w = 1, for normals in this direction.
     pub right: Vec3,
-    /// World size of a texel across in m where w = 1; it grows with w.
+    /// World width of a texel, in m where w = 1; proportional to w.
     pub texel_right_m: f32,
-    /// The same up the map.
+    /// Up axis of the map. Its length is the normal offset, in m where w = 1, for normals in this direction.
     pub up: Vec3,
-    /// World size of a texel up the map; it grows with w, of a warped map with w².
+    /// World height of a texel, in m where w = 1; proportional to w, or to w² in a warped map.
     pub texel_up_m: f32,
-    /// Meters that a depth of 1 spans where w = 1; of a parallel light.
+    /// Depth range of a parallel light's map in m, where w = 1.
     pub depth_m: f32,
-    /// near / (far - near) of a perspective map; 0 of a parallel light.
+    /// near / (far - near) of a perspective map; 0 for parallel lights.
     pub near_over_range: f32,
-    /// Radius of the light's bulb in m; 0: the light is a disc at infinity.
+    /// Radius of the light source in m; 0 for a disc at infinity.
     pub bulb_m: f32,
-    /// Tangent of the angular radius of that disc.
+    /// Tangent of the angular radius of a light source at infinity.
     pub tan_radius: f32,
-    /// Top left of the map in its layer, in texture coordinates.
+    /// Top left corner of the map in its layer, in texture coordinates.
     pub uv_corner: Vec2,
-    /// Part of the layer's width and height that the map takes.
+    /// Size of the map as a share of the layer's width and height.
     pub uv_scale: f32,
-    /// Number of the last level of moments that is the map's own.
+    /// Last mip level of moments that belongs to this map alone.
     pub last_level: f32,
-    /// Which layer.
+    /// Index of the layer.
     pub layer: u32,
-    /// Not 0: the map's perspective follows the camera's.
+    /// Nonzero if the map's perspective is warped to the camera's.
     pub warped: u32,
     /// Padding to 16 bytes; zero.
     pub _pad: [u32; 2],
 }
 
-/// The view a shadow map is drawn with; `wgsl/pass/shadow.wgsl`.
+/// View that draws a shadow map; `wgsl/pass/shadow.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ShadowViewUniforms {
-    /// World to the light's clip space, reversed-Z.
+    /// World to light clip space, reversed-Z.
     pub clip_from_world: Mat4,
-    /// World to depth away from the light: 0 at the near end of the map, 1 at the far end.
+    /// World to linear depth: 0 at the near end of the map, 1 at the far end.
     pub linear_depth: Vec4,
-    /// Exponent of the warp of moments.
+    /// Exponent of the depth warp for moments.
     pub exponent: f32,
     /// Padding to 16 bytes; zero.
     pub _pad: [f32; 3],
 }
 
-/// A blur of moments along one axis; `wgsl/pass/shadow_blur.wgsl`.
+/// Settings of a blur of moments along one axis; `wgsl/pass/shadow_blur.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct ShadowBlurUniforms {
-    /// One texel along the axis: (1, 0) or (0, 1).
+    /// Step of one texel along the axis: (1, 0) or (0, 1).
     pub step: IVec2,
     /// -1 / (2 σ²) of the Gaussian, σ in texels.
     pub falloff: f32,
     /// Padding to 8 bytes; zero.
     pub _pad: f32,
-    /// First and last texel of the map: beyond lies its edge.
+    /// First texel of the map; reads are clamped to it.
     pub first: IVec2,
-    /// See `first`.
+    /// Last texel of the map; reads are clamped to it.
     pub last: IVec2,
 }
 

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SharpenUniforms {
-    /// 0 to 1.
+    /// Strength, 0…1.
     pub strength: f32,
     /// Padding to 16 bytes; zero.
     pub _pad: [f32; 3],

@@ -9,24 +9,24 @@ use crate::reference::sky::Preetham;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct SkyUniforms {
-    /// Perez' A…E for (x, y, Y); w is unused.
+    /// Perez coefficients A…E for (x, y, Y); w is unused.
     pub perez: [Vec4; 5],
-    /// (x, y, Y) at the zenith over Perez' function there; Y in pre-exposed nits.
+    /// (x, y, Y) at the zenith divided by the Perez function there; Y in pre-exposed nits.
     pub zenith: Vec3,
-    /// 1 - cos of the angular radius of the sun's disc, where it has a halo.
+    /// 1 - cos of the angular radius of the sun's disc, if it has a halo.
     pub disc_versine: f32,
-    /// Pre-exposed radiance below the horizon, or everywhere where it is constant.
+    /// Pre-exposed radiance below the horizon, or of the whole constant sky.
     pub ground: Vec3,
-    /// One over the difference between the halo's versine and the disc's.
+    /// Reciprocal of the difference between the versines of the halo and of the disc.
     pub per_halo: f32,
-    /// Unit vector toward the sun that the sky was made for.
+    /// Unit vector toward the sun for which the coefficients were computed.
     pub toward_sun: Vec3,
     /// Exponent of the halo's falloff.
     pub halo_falloff: f32,
 }
 
 impl SkyUniforms {
-    /// Packs a sky. `exposure` in 1/nits.
+    /// Packs a sky, with `exposure` in 1/nits.
     pub fn new(sky: &Preetham, exposure: f32) -> Self {
         let exposure = f64::from(exposure);
         let mut zenith = sky.zenith;
@@ -40,16 +40,16 @@ impl SkyUniforms {
         }
     }
 
-    /// The same pre-exposed radiance everywhere, for the entry point `fs_constant`.
+    /// Creates a sky of constant pre-exposed radiance, for the entry point `fs_constant`.
     pub fn constant(radiance: Vec3) -> Self {
         Self { ground: radiance, ..Self::default() }
     }
 
-    /// Adds a disc of that angular radius in radians and a halo of `size` times the radius, above 1, with an exponent of
-    /// falloff above 0; for the feature `SUN_HALO`.
+    /// Adds a sun disc with an angular radius in radians and a halo of `size` times this radius, with `size` above 1.
+    /// The falloff exponent must be above 0. For the feature `SUN_HALO`.
     #[must_use]
     pub fn with_halo(self, radius_rad: f32, size: f32, falloff: f32) -> Self {
-        // 1 - cos, by the half angle.
+        // 1 - cos, computed from the half angle.
         let versine = |angle: f64| 2.0 * (0.5 * angle).sin().powi(2);
         let radius = f64::from(radius_rad);
         let disc = versine(radius);
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use glam::DVec3;
 
-    /// Exposure is a factor on the luminance Y and on the ground, and turns no color.
+    /// Verifies that exposure scales the luminance Y and the ground without a change of hue.
     #[test]
     fn exposure_scales_radiance_alone() {
         let sky = Preetham {

@@ -7,17 +7,17 @@ use glam::{Mat4, Vec4};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct TaaUniforms {
-    /// Clip space of this frame to that of the frame before, both without jitter.
+    /// Clip space of this frame to clip space of the previous frame, both without jitter.
     pub earlier_clip_from_clip: Mat4,
-    /// Weights of a texel and its neighbors, row by row from the top left; three are unused.
+    /// Weights of a texel and its neighbors, row by row from the top left; the last three are unused.
     pub weights: [Vec4; 3],
-    /// Share of this frame in the sum; 1 where there is none before.
+    /// Weight of this frame in the blend; 1 without a history.
     pub feedback: f32,
-    /// Deviations that a box by variance is wide to either side.
+    /// Half width of the variance clipping box, in standard deviations.
     pub variance_gamma: f32,
-    /// Exposure of this frame over that of the frame before.
+    /// Exposure of this frame divided by that of the previous frame.
     pub exposure_ratio: f32,
-    /// Padding.
+    /// Padding to 16 bytes; zero.
     pub _pad: f32,
 }
 

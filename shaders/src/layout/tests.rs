@@ -1,4 +1,4 @@
-//! The structs against naga's layout of the WGSL structs of the same name.
+//! Comparison of the structs with naga's layout of the WGSL structs of the same name.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ fn rust_structs() -> Vec<StructLayout> {
         .collect()
 }
 
-/// The structs of all passes with all features and effects; one name must mean one layout.
+/// Returns the structs of all passes with all features and effects; each name must have one layout.
 fn wgsl_structs() -> BTreeMap<String, StructLayout> {
     let effects = library::SOURCES.iter().filter_map(|source| {
         let name = source.path.strip_prefix("effect/")?.strip_suffix(".wgsl")?;
@@ -32,7 +32,7 @@ fn wgsl_structs() -> BTreeMap<String, StructLayout> {
     let mut structs: BTreeMap<String, StructLayout> = BTreeMap::new();
     for pass in library::passes() {
         let effects = if pass.wgsl.contains("epilogue(") { effects.as_slice() } else { &[] };
-        // Without INSTANCE_STREAM objects are read from buffers.
+        // Without INSTANCE_STREAM, objects are read from buffers.
         let without = Feature::all().filter(|feature| *feature != Feature::INSTANCE_STREAM).collect();
         for features in [Feature::all().collect(), without] {
             for found in resolve(&pass, &features, effects).unwrap().reflection.structs {
@@ -69,13 +69,13 @@ fn the_comparison_notices_a_moved_member() {
 
 #[test]
 fn element_and_uniform_sizes_are_multiples_of_16() {
-    // Uniform structs are read in rows of 16 bytes, storage arrays step by the element.
+    // Uniform structs are read in rows of 16 bytes; storage arrays have the stride of their element.
     for layout in wgsl_structs().values() {
         assert_eq!(layout.size_bytes % 16, 0, "{}", layout.name);
     }
 }
 
-/// Value of a `const NAME: u32 = …u;` in an embedded file.
+/// Returns the value of a `const NAME: u32 = …u;` in an embedded file.
 fn constant(path: &str, name: &str) -> u32 {
     let text = library::text(path).unwrap();
     let from = format!("const {name}: u32 = ");
@@ -94,7 +94,7 @@ fn constants_have_the_same_values_on_both_sides() {
     }
     let slots = constant("interface/material.wgsl", "SLOT_COUNT");
     assert_eq!(slots, layout::MATERIAL_SLOTS);
-    // The bits of traits are written as sums with the number of slots.
+    // Trait bits are sums with the number of texture slots.
     let material = |name: &str| {
         let text = library::text("interface/material.wgsl").unwrap();
         let from = format!("const {name}: u32 = SLOT_COUNT + ");
@@ -132,7 +132,7 @@ fn defaults_of_the_overrides_are_the_defaults_of_the_settings() {
     assert_eq!(tone_map.default, ToneMap::default().number().map(f64::from));
 }
 
-/// What a fade is where nothing else is asked for: Filament's `VignetteOptions`, half of everything, to black.
+/// Verifies the default fade against Filament's `VignetteOptions`: 0.5 for every parameter, fading to black.
 #[test]
 fn the_usual_fade_is_filaments() {
     let layout::EdgeFade { middle, roundness, feather, color, multiple_px } = layout::EdgeFade::DEFAULT;

@@ -1,32 +1,32 @@
-//! Tone curves by number, as `wgsl/lib/tone_map.wgsl` has them.
+//! Tone curves and their numbers in `wgsl/lib/tone_map.wgsl`.
 
 use glam::DVec3;
 
-/// A curve by four numbers (Lottes, "Advanced Techniques and Optimization of HDR Color Pipelines", 2016), of each channel of
-/// Rec.2020.
+/// Tone curve with four parameters, applied to each channel of Rec.2020 (Lottes, "Advanced Techniques and Optimization
+/// of HDR Color Pipelines", 2016).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct GenericCurve {
-    /// Slope about the middle, above 0.
+    /// Slope around middle gray, above 0.
     pub contrast: f32,
-    /// Which light of the scene is middle grey, 0…1.
+    /// Scene light of middle gray, 0…1.
     pub middle_in: f32,
-    /// Which light of the display it becomes, 0…1.
+    /// Display light of middle gray, 0…1.
     pub middle_out: f32,
-    /// The light of the scene that becomes white, at least 1.
+    /// Scene light that maps to white, at least 1.
     pub white: f32,
 }
 
 impl GenericCurve {
-    /// Filament's values: near ACES.
+    /// Filament's values, similar to ACES.
     pub const DEFAULT: Self = Self { contrast: 1.55, middle_in: 0.18, middle_out: 0.215, white: 10.0 };
 
-    /// Contrast, input scale and output scale, as the shader takes them. Numbers outside of their ranges are clamped.
+    /// Returns contrast, input scale and output scale for the shader. Parameters out of range are clamped.
     pub fn numbers(&self) -> DVec3 {
         let contrast = f64::from(self.contrast).clamp(1e-5, 4.0);
         let middle_in = f64::from(self.middle_in).clamp(1e-5, 1.0);
         let middle_out = f64::from(self.middle_out).clamp(1e-5, 0.9999);
-        // So far above the middle that the curve rises.
+        // The curve rises only if white is sufficiently above middle gray.
         let least = (1.0001 / middle_out).powf(1.0 / contrast) * middle_in;
         let white = f64::from(self.white).clamp(least.max(1.0), 65504.0_f64.max(least));
         let (a, b) = (middle_in.powf(contrast), white.powf(contrast));
@@ -35,22 +35,22 @@ impl GenericCurve {
     }
 }
 
-/// A tone curve of `wgsl/lib/tone_map.wgsl`, the value of the override `TONE_MAP`.
+/// Tone curve of `wgsl/lib/tone_map.wgsl`, the value of the override `TONE_MAP`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ToneMap {
     /// Clamped to 0…1.
     Linear,
-    /// ACES 1.0 as fitted by Hill: the nearest to the true transform, with a white that is white.
+    /// ACES 1.0 as fitted by Hill: closest to the reference transform, and white stays white.
     #[default]
     Hill,
     /// Narkowicz' per-channel curve in Rec.709, Filament's FILMIC.
     Filmic,
     /// Khronos PBR Neutral, in Rec.709.
     Neutral,
-    /// ACES with its input brighter by 1/0.6: Filament's default.
+    /// ACES with its input scaled by 1/0.6: Filament's default.
     AcesLegacy,
-    /// Clamped to 0…1 in the primaries of Rec.2020: Filament's LINEAR.
+    /// Clamped to 0…1 in Rec.2020: Filament's LINEAR.
     Linear2020,
     /// ACES as Filament computes it.
     Aces,
@@ -58,23 +58,23 @@ pub enum ToneMap {
     Agx,
     /// AgX with its warm look.
     AgxGolden,
-    /// AgX with its look of more contrast and color.
+    /// AgX with its look of higher contrast and saturation.
     AgxPunchy,
     /// The curve of Gran Turismo 7 for a display of 250 nits.
     Gt7,
-    /// A color for each stop.
+    /// False colors: one color per stop.
     DisplayRange,
-    /// A curve by four numbers.
+    /// Curve with four parameters.
     Generic(GenericCurve),
-    /// x / (x + 0.155) · 1.019 of each channel of Rec.709: close to FILMIC with the sRGB transfer function baked in. Cheap
-    /// enough for phones: no power is computed, and no encoding follows.
+    /// x / (x + 0.155) · 1.019 for each channel of Rec.709: close to FILMIC with the sRGB transfer function included.
+    /// Fast enough for phones, because it needs no power function and no encoding step.
     Mobile,
-    /// A function of the application's own, which is known to a table of grading alone.
+    /// Custom function of the application; available only through a grading table.
     Own,
 }
 
 impl ToneMap {
-    /// All curves that have a name.
+    /// All named curves.
     pub const ALL: [Self; 14] = [
         Self::Linear,
         Self::Hill,
@@ -92,7 +92,7 @@ impl ToneMap {
         Self::Mobile,
     ];
 
-    /// The curve's number in the shader; none of one's own.
+    /// Returns the curve's number in the shader; `None` for a custom curve.
     pub const fn number(self) -> Option<u32> {
         Some(match self {
             Self::Linear => 0,
@@ -113,27 +113,27 @@ impl ToneMap {
         })
     }
 
-    /// Numbers of the generic curve: this one's, or else the default.
+    /// Returns the parameters of the generic curve, or the defaults for other curves.
     pub fn generic(self) -> DVec3 {
         if let Self::Generic(curve) = self { curve.numbers() } else { GenericCurve::DEFAULT.numbers() }
     }
 
-    /// Whether colors are graded in Rec.2020 before this curve: before all but FILMIC, as in Filament.
+    /// Returns true if grading precedes this curve in Rec.2020; false only for FILMIC, as in Filament.
     pub const fn graded_in_rec2020(self) -> bool {
         !matches!(self, Self::Filmic)
     }
 
-    /// Whether the curve is of each channel of Rec.709 alone.
+    /// Returns true if the curve maps each channel of Rec.709 independently.
     pub const fn keeps_channels_apart(self) -> bool {
         matches!(self, Self::Linear | Self::Filmic | Self::Mobile)
     }
 
-    /// Whether the curve gives sRGB encoded light, because the transfer function is part of it.
+    /// Returns true if the output is sRGB encoded because the curve includes the transfer function.
     pub const fn is_encoded(self) -> bool {
         matches!(self, Self::Mobile)
     }
 
-    /// Name on a command line.
+    /// Returns the name for command lines.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Linear => "linear",
@@ -154,7 +154,7 @@ impl ToneMap {
         }
     }
 
-    /// The curve of that name.
+    /// Returns the curve with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|curve| curve.name() == name)
     }
@@ -169,7 +169,7 @@ mod tests {
         let contrast = |contrast| GenericCurve { contrast, ..GenericCurve::DEFAULT }.numbers().x;
         assert_eq!([-1.0, 0.0, 4.0, 4.2, 100.0].map(contrast), [1e-5, 1e-5, 4.0, 4.0, 4.0]);
         assert_eq!(contrast(2.0), 2.0);
-        // The curve goes through its middle and its white: y = x^c s / (x^c + t) in the form of the shader.
+        // The curve passes through its middle and its white: y = x^c s / (x^c + t) in the form of the shader.
         let of = |curve: GenericCurve, x: f64| {
             let [contrast, input, output] = curve.numbers().to_array();
             let power = x.powf(contrast);

@@ -1,9 +1,9 @@
-//! The vertex format: two streams of vertices and one of instances, in either of two forms; and where vertices were in the frame before.
+//! Vertex formats: two vertex streams, one instance stream in either of two forms, and positions in the previous frame.
 //!
-//! Positions lie in a stream of their own, everything else in a second one. Shadow maps and
-//! the depth prepass of opaque geometry read positions alone: 12 bytes a vertex instead of
-//! 64, and a tiler that bins by position first gains the same in the color pass. The
-//! rest is interleaved, because a stage that reads one of these attributes reads most of them.
+//! Positions have their own stream, and a second stream holds all other attributes. Shadow maps and the depth prepass
+//! of opaque geometry read only positions: 12 bytes per vertex instead of 64. Tilers that bin by position save the same
+//! bandwidth in the color pass. The remaining attributes are interleaved, because stages that read one of them usually
+//! read most of them.
 
 use super::ObjectAttributes;
 use bytemuck::{Pod, Zeroable};
@@ -13,10 +13,10 @@ use half::f16;
 pub const STREAM_POSITION: u32 = 0;
 /// Index of the vertex buffer with [`VertexAttributes`].
 pub const STREAM_ATTRIBUTES: u32 = 1;
-/// Index of the vertex buffer with a `u32` an instance, the number of the object; or with [`ObjectAttributes`].
+/// Index of the vertex buffer with one `u32` per instance, the object's number, or with [`ObjectAttributes`].
 pub const STREAM_INSTANCE: u32 = 2;
-/// Index of the vertex buffer with [`VertexPosition`] in the frame before, which velocity reads of what joints and morph
-/// targets move.
+/// Index of the vertex buffer with each [`VertexPosition`] in the previous frame. The velocity pass reads it for
+/// skinned and morphed meshes.
 pub const STREAM_EARLIER: u32 = 3;
 
 /// Element of the position stream.
@@ -31,22 +31,21 @@ pub struct VertexPosition {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct VertexAttributes {
-    /// Unit normal in model space; zero where there is none, and the shader takes the triangle's.
+    /// Unit normal in model space; zero if absent, and the shader uses the geometric normal.
     pub normal: [f32; 3],
-    /// Unit tangent in model space, and the sign of the bitangent in w; zero where there is none, and the shader makes
-    /// one.
+    /// Unit tangent in model space, and the sign of the bitangent in w; zero if absent, and the shader derives one.
     pub tangent: [f32; 4],
-    /// First set of texture coordinates, v downward.
+    /// First set of texture coordinates, with v pointing down.
     pub uv0: [f32; 2],
     /// Second set of texture coordinates.
     pub uv1: [f32; 2],
-    /// Linear color and alpha as half floats: colors may exceed 1, and one eighth of a code of
-    /// 8 bits is kept everywhere below it.
+    /// Linear color and alpha as half floats. Colors may exceed 1; below 1 the precision is one eighth of an 8-bit step
+    /// or better.
     pub color: [f16; 4],
 }
 
 impl Default for VertexAttributes {
-    /// White, everything else absent; the frame that stands in for a tangent is right-handed.
+    /// Returns white with all other attributes absent. The derived tangent frame is right-handed.
     fn default() -> Self {
         Self { normal: [0.0; 3], tangent: [0.0, 0.0, 0.0, 1.0], uv0: [0.0; 2], uv1: [0.0; 2], color: [f16::ONE; 4] }
     }
@@ -63,12 +62,12 @@ pub enum VertexFormat {
     Uint32,
 }
 
-/// Where a shader location is found in memory.
+/// Memory location of a shader input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexAttribute {
-    /// `@location` in the vertex stage.
+    /// Number in `@location` of the vertex stage.
     pub location: u32,
-    /// [`STREAM_POSITION`], [`STREAM_ATTRIBUTES`], [`STREAM_INSTANCE`] or [`STREAM_EARLIER`].
+    /// Vertex buffer: [`STREAM_POSITION`], [`STREAM_ATTRIBUTES`], [`STREAM_INSTANCE`] or [`STREAM_EARLIER`].
     pub stream: u32,
     /// Offset from the start of the element, in bytes.
     pub offset_bytes: u64,
@@ -80,7 +79,7 @@ const fn attribute(location: u32, stream: u32, offset_bytes: usize, format: Vert
     VertexAttribute { location, stream, offset_bytes: offset_bytes as u64, format }
 }
 
-/// Attributes by location: position, normal, tangent, uv0, uv1, color, number of the object, position in the frame before.
+/// Attributes by location: position, normal, tangent, uv0, uv1, color, object number, position in the previous frame.
 pub const VERTEX_ATTRIBUTES: [VertexAttribute; 8] = {
     use VertexAttributes as A;
     use std::mem::offset_of;
@@ -97,7 +96,8 @@ pub const VERTEX_ATTRIBUTES: [VertexAttribute; 8] = {
     ]
 };
 
-/// What stands in [`STREAM_INSTANCE`] for shaders with the feature `INSTANCE_STREAM`, in the order of [`ObjectAttributes`].
+/// Contents of [`STREAM_INSTANCE`] for shaders with the feature `INSTANCE_STREAM`, in the order of
+/// [`ObjectAttributes`].
 pub const OBJECT_ATTRIBUTES: [VertexAttribute; 9] = {
     use ObjectAttributes as O;
     use std::mem::offset_of;
@@ -115,7 +115,7 @@ pub const OBJECT_ATTRIBUTES: [VertexAttribute; 9] = {
     ]
 };
 
-/// Bytes from one element of a stream to the next.
+/// Returns the stride of a stream in bytes.
 pub const fn stream_stride_bytes(stream: u32) -> u64 {
     match stream {
         STREAM_POSITION | STREAM_EARLIER => size_of::<VertexPosition>() as u64,
@@ -125,7 +125,7 @@ pub const fn stream_stride_bytes(stream: u32) -> u64 {
 }
 
 impl VertexFormat {
-    /// Components a shader sees; floats of any size arrive as f32.
+    /// Returns the number of components that a shader reads; floats of any size are read as f32.
     pub const fn components(self) -> u32 {
         match self {
             Self::Uint32 => 1,
@@ -135,7 +135,7 @@ impl VertexFormat {
         }
     }
 
-    /// Bytes in memory.
+    /// Returns the size in memory, in bytes.
     pub const fn size_bytes(self) -> u64 {
         match self {
             Self::Uint32 => 4,

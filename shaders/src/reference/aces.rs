@@ -1,9 +1,9 @@
-//! Mirror of `wgsl/lib/aces.wgsl`, as the transforms are published: through xyY, with the matrices one by one.
+//! Mirror of `wgsl/lib/aces.wgsl`, following the published transforms: through xyY, one matrix at a time.
 
 use super::primaries::{AP0_FROM_AP1, XYZ_FROM_AP1, XYZ_FROM_REC2020};
 use glam::DVec3;
 
-/// The largest half float.
+/// Largest finite half float.
 const MOST: f64 = 65504.0;
 
 fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
@@ -11,12 +11,12 @@ fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Saturation of a color of AP0.
+/// Returns the saturation of a color in AP0.
 pub fn aces_saturation(ap0: DVec3) -> f64 {
     (ap0.max_element().max(1e-5) - ap0.min_element().max(1e-5)) / ap0.max_element().max(1e-2)
 }
 
-/// What the glow adds, as a share.
+/// Returns the relative brightness that the glow module adds.
 pub fn aces_glow(ap0: DVec3, saturation: f64) -> f64 {
     let DVec3 { x: r, y: g, z: b } = ap0;
     let chroma = (b * (b - g) + g * (g - r) + r * (r - b)).max(0.0).sqrt();
@@ -34,7 +34,7 @@ pub fn aces_glow(ap0: DVec3, saturation: f64) -> f64 {
     }
 }
 
-/// How red a hue is.
+/// Returns how close a hue is to red.
 pub fn aces_redness(ap0: DVec3) -> f64 {
     let (aside, along) = (3.0_f64.sqrt() * (ap0.y - ap0.z), 2.0 * ap0.x - ap0.y - ap0.z);
     if aside.abs() + along.abs() < 1e-20 {
@@ -43,7 +43,7 @@ pub fn aces_redness(ap0: DVec3) -> f64 {
     smoothstep(0.0, 1.0, 1.0 - (2.0 * aside.atan2(along).to_degrees() / 135.0).abs()).powi(2)
 }
 
-/// Rec.2020 of the scene to Rec.2020 of a display.
+/// Tone maps scene light to display light, both in Rec.2020.
 pub fn tone_aces(color: DVec3, brightness: f64) -> DVec3 {
     let luminance = XYZ_FROM_AP1.row(1);
     let gray = |c: DVec3| DVec3::splat(c.dot(luminance));
@@ -70,7 +70,7 @@ mod tests {
     use crate::reference::primaries::rec709_from_rec2020;
     use crate::reference::srgb::srgb_from_linear;
 
-    /// Nothing adapts the white of ACES to that of the display.
+    /// Verifies that the white of ACES is not adapted to that of the display.
     #[test]
     fn white_ends_where_filaments_does() {
         let codes = |x: f64| srgb_from_linear(rec709_from_rec2020(tone_aces(DVec3::splat(x), 1.0))) * 255.0;

@@ -4,31 +4,31 @@ use glam::{DVec2, DVec3};
 
 use super::math::{PI, mix, saturate};
 
-/// alpha along tangent and bitangent from an isotropic one and an anisotropy.
+/// Returns alpha along tangent and bitangent, for an isotropic alpha and an anisotropy.
 pub fn anisotropic_alpha(alpha: f64, anisotropy: f64, floor: f64) -> DVec2 {
     let a = anisotropy.clamp(-1.0, 1.0);
     DVec2::new(alpha * (1.0 + a), alpha * (1.0 - a)).clamp(DVec2::splat(floor), DVec2::ONE)
 }
 
-/// The same by the rule of KHR_materials_anisotropy.
+/// Returns alpha along tangent and bitangent, as specified in KHR_materials_anisotropy.
 pub fn gltf_anisotropic_alpha(alpha: f64, strength: f64, floor: f64) -> DVec2 {
     let s = saturate(strength);
     DVec2::new(mix(alpha, 1.0, s * s), alpha).clamp(DVec2::splat(floor), DVec2::ONE)
 }
 
-/// Anisotropic GGX distribution in 1/sr, in Burley's form.
+/// Evaluates the anisotropic GGX distribution in 1/sr, in Burley's form.
 pub fn d_ggx_anisotropic(alpha: DVec2, toh: f64, boh: f64, noh: f64) -> f64 {
     let q = (toh / alpha.x).powi(2) + (boh / alpha.y).powi(2) + noh * noh;
     1.0 / (PI * alpha.x * alpha.y * q * q)
 }
 
-/// Height-correlated Smith visibility of the stretched lobe, from (t, b, n) components.
+/// Evaluates height-correlated Smith visibility of the anisotropic lobe, from (t, b, n) components.
 pub fn v_smith_ggx_correlated_anisotropic(alpha: DVec2, v: DVec3, l: DVec3) -> f64 {
     let slope = |d: DVec3| ((alpha.x * d.x).powi(2) + (alpha.y * d.y).powi(2) + d.z * d.z).sqrt();
     0.5 / (l.z * slope(v) + v.z * slope(l)).max(7.7e-6)
 }
 
-/// Normal to reflect about for a prefiltered environment, not normalized.
+/// Returns the normal for reflection from a prefiltered environment, not normalized.
 pub fn anisotropic_bent_normal(n: DVec3, across: DVec3, v: DVec3, anisotropy: f64, roughness: f64) -> DVec3 {
     let toward = across.cross(v).cross(across);
     if toward.length_squared() < 1e-8 {
@@ -71,7 +71,7 @@ mod tests {
                 }
             }
             area *= 2.0 * PI / f64::from(rows * columns);
-            // The midpoint rule over 800² cells.
+            // Error of the midpoint rule with 800² cells.
             assert!((area - 1.0).abs() < 2e-3, "{alpha}: {area}");
         }
     }

@@ -1,6 +1,6 @@
 //! Mirror of `wgsl/lib/bilateral.wgsl`.
 
-/// Weight of a sample whose surface is so far apart.
+/// Returns the weight of a sample whose surface is `apart_m` away in depth.
 pub fn bilateral_weight(apart_m: f64, threshold_m: f64) -> f64 {
     (1.0 - (apart_m / threshold_m).powi(2)).max(0.0)
 }

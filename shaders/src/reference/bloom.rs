@@ -2,22 +2,22 @@
 
 use glam::DVec3;
 
-/// Weights of four texels in a row.
+/// Returns the weights of four texels in a row.
 pub fn tent_weights(beyond: f64) -> [f64; 4] {
     [1.0 - beyond, 2.0 - beyond, 1.0 + beyond, beyond].map(|weight| weight * 0.25)
 }
 
-/// The largest channel.
+/// Returns the largest channel.
 pub fn brightest(color: DVec3) -> f64 {
     color.max_element()
 }
 
-/// Weight of a color in a mean that one bright texel does not rule.
+/// Returns the weight of a color in a mean, reduced for bright texels.
 pub fn firefly_weight(color: DVec3) -> f64 {
     1.0 / (1.0 + brightest(color))
 }
 
-/// What of a color glows.
+/// Returns the part of a color that glows.
 pub fn glowing(color: DVec3, threshold: f64, hard: f64, per_highlight: f64) -> DVec3 {
     let all = if brightest(color) >= threshold { color } else { DVec3::ZERO };
     let above = (color - threshold).max(DVec3::ZERO).lerp(all, hard);
@@ -28,7 +28,8 @@ pub fn glowing(color: DVec3, threshold: f64, hard: f64, per_highlight: f64) -> D
 mod tests {
     use super::*;
 
-    /// Four texels stand for a tent of three about the place: their mean place is that place, whatever it is.
+    /// Verifies that four texels represent a tent of width three: their weighted mean position equals the sample
+    /// position.
     #[test]
     fn weights_are_a_tent_about_the_place() {
         for step in 0..=16 {
@@ -40,7 +41,7 @@ mod tests {
         }
     }
 
-    /// One texel of 65504 among three black ones gives a mean of 0.33 instead of 16376.
+    /// Verifies that one texel of 65504 among three black texels gives a mean of 0.33 instead of 16376.
     #[test]
     fn hard_case_24_a_firefly_does_not_rule_the_mean() {
         let colors = [DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, DVec3::splat(65504.0)];

@@ -1,13 +1,12 @@
 //! Every library function with its domain and error bound, as data.
 //!
-//! A harness with a device runs three calls per [`Case`] and knows none of the functions:
-//! [`Case::shader`] gives a compute shader that evaluates the function over a buffer,
-//! [`Case::inputs`] the numbers to put there, and [`Case::check`] judges what came back
-//! against the f64 mirror. A test of this crate sees to it that no function is missing.
+//! A test on a device compares all functions with three calls per [`Case`]. [`Case::shader`] returns a compute shader
+//! that evaluates the function for every element of a buffer. [`Case::inputs`] returns the contents of this buffer.
+//! [`Case::check`] compares the results with the f64 mirror. A test of this crate verifies that no function is missing.
 //!
-//! [`all`] is the build in f32. [`half()`] lists the functions that compute in f16 with
-//! [`Feature::HALF`](crate::Feature::HALF), with a domain and a bound of their own; a test sees to it that every other
-//! function has the same text in both builds.
+//! [`all`] covers the f32 build. [`half()`] lists the functions that compute in f16 with
+//! [`Feature::HALF`](crate::Feature::HALF), with their own domains and bounds. A test verifies that all other functions
+//! have the same text in both builds.
 
 mod ambient;
 mod case;
@@ -30,7 +29,7 @@ mod transparency;
 
 pub use case::{Bound, Case, Deviation, Disagreement, Domain, HalfCase};
 
-/// All cases, by file.
+/// Returns all cases, by file.
 pub fn all() -> impl Iterator<Item = &'static Case> {
     let lit = shading::CASES.iter().chain(lobes::CASES).chain(ambient::CASES).chain(froxels::CASES);
     lit.chain(transmission::CASES)
@@ -45,7 +44,7 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
         .chain(temporal::CASES)
 }
 
-/// The cases of the functions that compute in half floats with [`Feature::HALF`](crate::Feature::HALF), in that build.
+/// Returns the cases of functions that compute in f16 with [`Feature::HALF`](crate::Feature::HALF), for that build.
 pub fn half() -> impl Iterator<Item = Case> {
     all().filter_map(|case| {
         let HalfCase { parameters, bound } = case.half?;

@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use super::math::{mix, saturate};
 
-/// Kelemen's visibility.
+/// Evaluates Kelemen's visibility term.
 pub fn v_kelemen(loh: f64) -> f64 {
     0.25 / (loh * loh).max(3.9e-6)
 }
 
-/// f0 of a layer under a coat of index 1.5, by way of its index of refraction.
+/// Returns f0 of a layer under a coat of index 1.5, by way of the layer's index of refraction.
 pub fn f0_under_clear_coat(f0: DVec3) -> DVec3 {
     DVec3::from_array(f0.to_array().map(|f0| {
         let s = saturate(f0).sqrt();
@@ -21,13 +21,13 @@ pub fn f0_under_clear_coat(f0: DVec3) -> DVec3 {
     }))
 }
 
-/// Filament's cubic for the same.
+/// Returns f0 of a layer under a coat of index 1.5, by Filament's cubic approximation.
 pub fn f0_under_clear_coat_fast(f0: DVec3) -> DVec3 {
     let cubic = |f: f64| saturate(f * (f * (0.941_892 - 0.263_008 * f) + 0.346_479) - 0.028_599_8);
     DVec3::from_array(f0.to_array().map(cubic))
 }
 
-/// Perceptual roughness of the layer below.
+/// Returns the perceptual roughness of the base as seen through the coat.
 pub fn roughness_under_clear_coat(base: f64, coat: f64, strength: f64) -> f64 {
     mix(base, base.max(coat), strength)
 }
@@ -52,13 +52,13 @@ mod tests {
             apart.fold(0.0, f64::max)
         };
         assert!(worst(40) < 0.022, "{}", worst(40));
-        // At f0 = 0 the exact value is that of air under the coat, 0.04.
+        // At f0 = 0, the exact value is that of air under the coat, 0.04.
         assert!((worst(0) - 0.04).abs() < 1e-3, "{}", worst(0));
     }
 
     #[test]
     fn kelemen_is_right_for_glossy_coats() {
-        // At roughness 0.089 it is height-correlated Smith to 1 % (accuracy 1.1).
+        // At roughness 0.089, it matches height-correlated Smith to 1 % (accuracy 1.1).
         let (nov, nol) = (0.8_f64, 0.8_f64);
         let exact = v_smith_ggx_correlated(nov, nol, 0.089 * 0.089);
         let error = v_kelemen(0.8) / exact - 1.0;

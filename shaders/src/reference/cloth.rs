@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::math::{PI, saturate};
 
-/// Charlie's distribution in 1/sr.
+/// Evaluates the Charlie distribution in 1/sr.
 pub fn d_charlie(noh: f64, alpha: f64) -> f64 {
     let c = noh.clamp(0.0, 1.0);
     let sin2 = (1.0 - c * c).max(0.007_812_5);
@@ -12,12 +12,12 @@ pub fn d_charlie(noh: f64, alpha: f64) -> f64 {
     (2.0 + inverse) * sin2.powf(0.5 * inverse) / (2.0 * PI)
 }
 
-/// Ashikhmin's visibility in Neubelt's form.
+/// Evaluates Ashikhmin's visibility term in Neubelt's form.
 pub fn v_neubelt(nov: f64, nol: f64) -> f64 {
     0.25 / (nol + nov - nol * nov).max(1.5e-5)
 }
 
-/// What a sheen layer leaves for the layers below it.
+/// Returns the share of light that a sheen layer leaves for the layers below.
 pub fn sheen_attenuation(sheen_color: DVec3, cloth_albedo: f64) -> f64 {
     1.0 - saturate(sheen_color.max_element() * cloth_albedo)
 }
@@ -28,7 +28,7 @@ mod tests {
 
     #[test]
     fn fibers_cover_the_surface() {
-        // ∫ D cos over the hemisphere is one, by substitution of sin θ.
+        // ∫ D cos over the hemisphere is one; computed by substitution of sin θ.
         for roughness in [0.2_f64, 0.5, 1.0] {
             let alpha = roughness * roughness;
             let n = 20_000;
@@ -37,7 +37,7 @@ mod tests {
                 d_charlie(theta.cos(), alpha) * theta.cos() * theta.sin() * 2.0 * PI * 0.5 * PI / f64::from(n)
             };
             let area: f64 = (0..n).map(cell).sum();
-            // The floor on sin² lifts the middle of rough lobes a little.
+            // The lower limit of sin² slightly increases the integral of rough lobes.
             assert!((area - 1.0).abs() < 2e-3, "{roughness}: {area}");
         }
     }

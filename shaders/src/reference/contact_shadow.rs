@@ -3,12 +3,12 @@
 use super::math::saturate;
 use glam::DVec2;
 
-/// Whether a ray is a little behind a surface.
+/// Returns true if a ray is slightly behind a surface, within the tolerance.
 pub fn contact_hides(surface: f64, ray: f64, tolerance: f64) -> bool {
     (tolerance - (surface - ray)).abs() < tolerance
 }
 
-/// How much a contact shadow counts at texture coordinates of the picture.
+/// Returns the weight of a contact shadow, by texture coordinates on the screen.
 pub fn contact_fade(uv: DVec2) -> f64 {
     let edge = (12.0 * (uv - 0.5).abs() - 5.0).max(DVec2::ZERO);
     saturate(1.0 - edge.length_squared())
@@ -25,7 +25,7 @@ mod tests {
         assert!(!contact_hides(0.0, 0.5, 0.01), "nothing is there");
     }
 
-    /// Hard case 36: beyond the picture nothing is known, and nothing hides.
+    /// Hard case 36: surfaces outside the screen are unknown and occlude nothing.
     #[test]
     fn hard_case_36_nothing_hides_at_the_edge() {
         for uv in [DVec2::new(-0.01, 0.5), DVec2::new(0.5, 1.01), DVec2::ZERO, DVec2::ONE] {

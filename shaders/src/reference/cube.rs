@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-/// Direction through uv of a face, its largest component ±1.
+/// Returns the direction through uv of a face, with a largest component of ±1.
 pub fn direction_from_cube_uv(face: u32, uv: DVec2) -> DVec3 {
     let DVec2 { x: s, y: t } = uv * 2.0 - 1.0;
     match face {
@@ -15,7 +15,7 @@ pub fn direction_from_cube_uv(face: u32, uv: DVec2) -> DVec3 {
     }
 }
 
-/// Solid angle of a unit of uv area over that at the middle of the face.
+/// Returns the solid angle per uv area, relative to the center of the face.
 pub fn cube_solid_angle_weight(uv: DVec2) -> f64 {
     (1.0 + (uv * 2.0 - 1.0).length_squared()).powf(-1.5)
 }
@@ -25,8 +25,7 @@ mod tests {
     use super::super::math::PI;
     use super::*;
 
-    /// The face that a direction of any length goes through, and where: the inverse of
-    /// [`direction_from_cube_uv`].
+    /// Returns the face and uv of a direction of any length: the inverse of [`direction_from_cube_uv`].
     fn cube_uv_from_direction(d: DVec3) -> (u32, DVec2) {
         let a = d.abs();
         let (face, s, t, major) = if a.x >= a.y && a.x >= a.z {
@@ -41,9 +40,9 @@ mod tests {
         (face, (DVec2::new(s, t) / major + 1.0) * 0.5)
     }
 
-    /// Solid angle in sr of texel (x, y) of a face of `size`² texels, exactly.
+    /// Returns the exact solid angle, in sr, of texel (x, y) of a face of `size`² texels.
     fn cube_texel_solid_angle_sr(x: u32, y: u32, size: u32) -> f64 {
-        // Of the rectangle from the middle of the face to a corner.
+        // Solid angle of the rectangle from the center of the face to a corner.
         let corner = |x: u32, y: u32| {
             let [s, t] = [x, y].map(|i| 2.0 * f64::from(i) / f64::from(size) - 1.0);
             (s * t).atan2((s * s + t * t + 1.0).sqrt())
@@ -65,7 +64,7 @@ mod tests {
 
     #[test]
     fn right_and_down_on_a_face_follow_the_specification() {
-        // On +Z the picture's right is +X and down is -Y; on +Y down is +Z.
+        // On +Z, the image's right is +X and down is -Y; on +Y, down is +Z.
         assert!(direction_from_cube_uv(4, DVec2::new(1.0, 0.5)).x > 0.0);
         assert!(direction_from_cube_uv(4, DVec2::new(0.5, 1.0)).y < 0.0);
         assert!(direction_from_cube_uv(2, DVec2::new(0.5, 1.0)).z > 0.0);
@@ -82,7 +81,7 @@ mod tests {
                 whole += 6.0 * exact;
                 let uv = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / f64::from(size);
                 let ratio = cube_solid_angle_weight(uv) / (exact / middle);
-                // A texel at its middle; worst in the corners.
+                // Approximation by the texel center; the error is largest in the corners.
                 assert!((ratio - 1.0).abs() < 2e-3, "{x} {y}: {ratio}");
             }
         }

@@ -1,6 +1,6 @@
 //! Mirror of `wgsl/lib/depth_normal.wgsl`.
 
-/// Whether the surface at `here` goes on toward larger coordinates rather than toward smaller ones.
+/// Returns true if the surface at `here` continues toward larger coordinates rather than smaller ones.
 pub fn continues_ahead(back: [f64; 2], here: f64, ahead: [f64; 2]) -> bool {
     let behind = (2.0 * back[1] - back[0] - here).abs().min((back[1] - here).abs());
     let before = (2.0 * ahead[0] - ahead[1] - here).abs().min((ahead[0] - here).abs());
@@ -13,13 +13,13 @@ mod tests {
 
     #[test]
     fn the_side_of_the_same_surface_is_taken() {
-        // A slope that ends in a step ahead, and one that begins after a step.
+        // A slope that ends at a step ahead, and one that begins after a step.
         assert!(!continues_ahead([1.0, 2.0], 3.0, [30.0, 31.0]));
         assert!(continues_ahead([30.0, 31.0], 3.0, [4.0, 5.0]));
-        // A strip of two texels: no side has a line of its own.
+        // A strip of two texels: neither side has a line of its own.
         assert!(continues_ahead([1.0, 1.0], 0.5, [0.5, 1.0]));
         assert!(!continues_ahead([1.0, 0.5], 0.5, [1.0, 1.0]));
-        // A crease: the slope that leads here, not the one that only meets it.
+        // A crease: the slope that leads to this texel wins over the slope that only meets it.
         assert!(!continues_ahead([1.0, 2.0], 3.0, [2.8, 2.5]));
     }
 }

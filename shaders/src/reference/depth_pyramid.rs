@@ -1,16 +1,16 @@
 //! Mirror of `wgsl/lib/depth_pyramid.wgsl`.
 
-/// The texel of the next finer level that a texel keeps.
+/// Returns the texel of the next finer level that a texel is copied from.
 pub fn finer_texel([x, y]: [i32; 2]) -> [i32; 2] {
     [2 * x + y.rem_euclid(2), 2 * y + x.rem_euclid(2)]
 }
 
-/// The texel of level 0 that a texel of `level` keeps.
+/// Returns the texel of level 0 that a texel of `level` is copied from.
 pub fn finest_texel(texel: [i32; 2], level: i32) -> [i32; 2] {
     (0..level).fold(texel, |texel, _| finer_texel(texel))
 }
 
-/// The level to read so many pixels away from the middle.
+/// Returns the level to read at a distance from the center, in pixels.
 pub fn pyramid_level(distance_px: f64, last_level: i32) -> i32 {
     (distance_px.max(1.0).log2().floor() as i32 - 3).clamp(0, last_level)
 }
@@ -19,7 +19,7 @@ pub fn pyramid_level(distance_px: f64, last_level: i32) -> i32 {
 mod tests {
     use super::*;
 
-    /// A texel keeps one of its own four, and neighbours keep different ones: a rotated grid.
+    /// Verifies that each texel keeps one of its four source texels, in a rotated grid that differs between neighbors.
     #[test]
     fn each_texel_keeps_one_of_its_own() {
         let mut corners = [[false; 2]; 2];

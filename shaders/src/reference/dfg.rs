@@ -4,23 +4,23 @@ use glam::{DVec2, DVec3};
 
 use super::dfg_integration::dfg_ggx;
 
-/// Texture coordinates of (nov, roughness) in a table of `size`² texels.
+/// Returns the texture coordinates of (nov, roughness) in a table of `size`² texels.
 pub fn dfg_uv(nov: f64, roughness: f64, size: f64) -> DVec2 {
     let p = DVec2::new(nov, roughness).clamp(DVec2::ZERO, DVec2::ONE);
     (p * (size - 1.0) + 0.5) / size
 }
 
-/// Directional albedo of the specular lobe.
+/// Returns the directional albedo of the specular lobe.
 pub fn specular_albedo(f0: DVec3, f90: f64, dfg: DVec2) -> DVec3 {
     f0 * (dfg.y - dfg.x) + f90 * dfg.x
 }
 
-/// Factor that gives back the energy lost between microfacets.
+/// Returns the factor that compensates for energy lost in multiple scattering.
 pub fn energy_compensation(f0: DVec3, dfg_y: f64) -> DVec3 {
     DVec3::ONE + f0 * (1.0 / dfg_y.clamp(0.3, 1.0) - 1.0)
 }
 
-/// Which visibility term the shader uses; the table must be made with the same.
+/// Visibility term of the shader; the table must be built with the same term.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Visibility {
@@ -31,21 +31,21 @@ pub enum Visibility {
     Fast,
 }
 
-/// (∫ D·V·Fc·cos, ∫ D·V·cos) for one view direction, by `samples` visible normals at
-/// Hammersley points. The second number lies in [1 - ln 2, 1] for the exact term. CPU only.
+/// Integrates (∫ D·V·Fc·cos, ∫ D·V·cos) for one view direction, with `samples` visible normals at Hammersley points.
+/// The second value is in [1 - ln 2, 1] for the exact term. CPU only.
 pub fn dfg_integrate(nov: f64, roughness: f64, visibility: Visibility, samples: u32) -> DVec2 {
     dfg_ggx(nov, roughness, visibility == Visibility::Fast, samples)
 }
 
-/// The table that the shader's `dfg_table` texture holds, in red and green: `size`² texels,
-/// rows from roughness 0 to 1, columns from nov 0 to 1. Half floats lose nothing visible.
-/// 64 texels with 128 samples err at most 0.006 (accuracy 1.3). CPU only.
+/// Returns the contents of the shader's texture `dfg_table`, in red and green. It has `size`² texels: rows from
+/// roughness 0 to 1, columns from nov 0 to 1. Half floats are sufficient. With 64 texels and 128 samples, the error is
+/// at most 0.006 (accuracy 1.3). CPU only.
 pub fn dfg_table(size: u32, visibility: Visibility, samples: u32) -> Vec<[f32; 2]> {
     let last = f64::from(size.max(2) - 1);
     let texel = |index: u32| {
         let column = f64::from(index % size) / last;
         let row = f64::from(index / size) / last;
-        // Both limits exist, but 0/0 does not lead to them.
+        // Both limits exist, but direct evaluation gives 0/0.
         let dfg = dfg_integrate(column.max(1e-3), row.max(0.02), visibility, samples);
         [dfg.x as f32, dfg.y as f32]
     };
@@ -82,7 +82,7 @@ mod tests {
     fn the_exact_table_is_a_set_of_albedos() {
         for [x, y] in dfg_table(16, Visibility::Exact, 128) {
             assert!((0.0..=1.0).contains(&x) && x <= y, "{x} {y}");
-            // 128 samples are good to 0.002 RMS.
+            // 128 samples have an RMS error of 0.002.
             assert!((0.306 - 0.01..=1.01).contains(&y), "{y}");
         }
     }
@@ -101,8 +101,8 @@ mod tests {
                 worst = worst.max((read - truth).abs());
             }
         }
-        // For nov > 0.05 and roughness above the floor; accuracy 1.3 states 0.0057 against
-        // quadrature, and both sides here carry sampling noise.
+        // For nov > 0.05 and roughness above the floor. Accuracy 1.3 states 0.0057 against quadrature; here, both sides
+        // have sampling noise.
         assert!(worst < 0.008, "{worst}");
     }
 

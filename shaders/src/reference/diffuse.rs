@@ -2,12 +2,12 @@
 
 use super::math::PI;
 
-/// Lambert's BRDF for albedo one, in 1/sr.
+/// Evaluates Lambert's BRDF for an albedo of one, in 1/sr.
 pub fn fd_lambert() -> f64 {
     1.0 / PI
 }
 
-/// Lambert's transmission times cosine for albedo one, in 1/sr.
+/// Evaluates Lambert's transmission times cosine for an albedo of one, in 1/sr.
 pub fn fd_transmitted(nol: f64) -> f64 {
     (-nol).clamp(0.0, 1.0) / PI
 }

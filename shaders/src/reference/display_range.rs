@@ -3,7 +3,7 @@
 use super::primaries::LUMINANCE_REC2020;
 use glam::DVec3;
 
-/// Colors of the stops from -5 about 18 % grey on.
+/// Colors of the stops, starting 5 stops below 18 % gray.
 const COLORS: [[f64; 3]; 16] = [
     [0.0, 0.0, 0.0],
     [0.0, 0.0, 0.1647],
@@ -23,12 +23,12 @@ const COLORS: [[f64; 3]; 16] = [
     [1.0, 1.0, 1.0],
 ];
 
-/// Color of a stop; the last one's from there on.
+/// Returns the color of a stop; later stops have the last color.
 pub fn display_range_color(index: u32) -> DVec3 {
     DVec3::from_array(COLORS[(index as usize).min(15)])
 }
 
-/// The color of the stop that a Rec.2020 color is at.
+/// Returns the false color for the stop of a Rec.2020 color.
 pub fn tone_display_range(color: DVec3) -> DVec3 {
     let y = color.dot(LUMINANCE_REC2020).clamp(1e-10, 65504.0);
     let stop = ((y / 0.18).log2() + 5.0).clamp(0.0, 15.0);

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// Interleaved gradient noise in [0, 1).
+/// Returns interleaved gradient noise in [0, 1).
 pub fn interleaved_gradient_noise(pixel: DVec2, frame: u32) -> f64 {
     let p = pixel + DVec2::splat(5.588_238 * f64::from(frame % 64));
     let inner = p.dot(DVec2::new(0.067_110_56, 0.005_837_15));
@@ -10,7 +10,7 @@ pub fn interleaved_gradient_noise(pixel: DVec2, frame: u32) -> f64 {
     outer - outer.floor()
 }
 
-/// Offset to add to an encoded value that will be rounded to `levels` codes.
+/// Returns the offset to add to an encoded value before quantization to `levels` steps.
 pub fn dither_offset(pixel: DVec2, frame: u32, levels: f64) -> f64 {
     (interleaved_gradient_noise(pixel, frame) - 0.5) / levels
 }
@@ -35,7 +35,7 @@ mod tests {
             let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n;
             assert!(values.iter().all(|v| (0.0..1.0).contains(v)));
             assert!((mean - 0.5).abs() < 0.01, "frame {frame}: mean {mean}");
-            // A uniform distribution has deviation 1/√12 = 0.289.
+            // A uniform distribution has a standard deviation of 1/√12 = 0.289.
             assert!((variance.sqrt() - 0.289).abs() < 0.01, "frame {frame}");
         }
     }

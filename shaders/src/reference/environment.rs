@@ -1,46 +1,46 @@
-//! Mirror of `wgsl/lib/environment.wgsl`, and the texels of a panorama.
+//! Mirror of `wgsl/lib/environment.wgsl`, and the texels of an equirectangular panorama.
 
 use glam::{DVec2, DVec3};
 
 use super::math::PI;
 
-/// d turned about the Y axis.
+/// Rotates d about the Y axis.
 pub fn rotate_about_y(d: DVec3, cos_sin: DVec2) -> DVec3 {
     let DVec2 { x: c, y: s } = cos_sin;
     DVec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x)
 }
 
-/// Texture coordinates of a unit direction.
+/// Returns the texture coordinates of a unit direction.
 pub fn equirect_uv_from_direction(d: DVec3) -> DVec2 {
     let azimuth = if d.x == 0.0 && d.z == 0.0 { 0.0 } else { d.x.atan2(-d.z) };
     DVec2::new(azimuth / (2.0 * PI) + 0.5, d.y.clamp(-1.0, 1.0).acos() / PI)
 }
 
-/// The unit direction at texture coordinates.
+/// Returns the unit direction at texture coordinates.
 pub fn direction_from_equirect_uv(uv: DVec2) -> DVec3 {
     let (azimuth, polar) = ((uv.x - 0.5) * 2.0 * PI, uv.y * PI);
     DVec3::new(polar.sin() * azimuth.sin(), polar.cos(), -polar.sin() * azimuth.cos())
 }
 
-/// Direction of the strongest reflection, not normalized: leans from r toward n by alpha².
+/// Returns the dominant reflection direction, not normalized: between r and n by alpha².
 pub fn specular_dominant_direction(n: DVec3, r: DVec3, alpha: f64) -> DVec3 {
     r + (n - r) * (alpha * alpha)
 }
 
-/// A texel of a panorama. CPU only.
+/// Texel of an equirectangular panorama. CPU only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquirectTexel {
-    /// Column of the texel, from 0.
+    /// Column, starting at 0.
     pub x: u32,
-    /// Row, 0 at the top.
+    /// Row, starting at 0 at the top.
     pub y: u32,
-    /// Unit vector through its centre.
+    /// Unit vector through the texel's center.
     pub direction: DVec3,
-    /// Solid angle it covers, exactly; all texels together cover 4π.
+    /// Exact solid angle; all texels together cover 4π.
     pub solid_angle_sr: f64,
 }
 
-/// The texels of a `width` × `height` panorama, row by row. CPU only.
+/// Returns the texels of a `width` × `height` panorama, row by row. CPU only.
 pub fn equirect_texels(width: u32, height: u32) -> impl Iterator<Item = EquirectTexel> {
     let edge = move |row: u32| (f64::from(row) / f64::from(height) * PI).cos();
     (0..height).flat_map(move |y| {

@@ -3,26 +3,26 @@
 use super::math::smoothstep;
 use glam::DVec2;
 
-/// 1 at `middle`, falling smoothly to 0 at `reach` on both sides.
+/// Returns 1 at `middle`, falling smoothly to 0 at `reach` on both sides.
 pub fn flare_ring(x: f64, middle: f64, reach: f64) -> f64 {
     1.0 - smoothstep(0.0, 1.0, ((x - middle).abs() / reach.max(1e-6)).min(1.0))
 }
 
-/// Where ghost `number` of what is seen at `uv` comes from.
+/// Returns the source position of ghost `number` at `uv`.
 pub fn ghost_place(uv: DVec2, spacing: f64, number: f64) -> DVec2 {
     let mirrored = 1.0 - uv;
     let place = mirrored + (0.5 - mirrored) * spacing * number;
     place - place.floor()
 }
 
-/// Unit vector toward the middle of a picture, in its own coordinates.
+/// Returns the unit vector toward the image center, in texture coordinates.
 pub fn flare_direction(uv: DVec2, aspect: f64) -> DVec2 {
     let v = (0.5001 - uv) * DVec2::new(aspect, 1.0);
     v / v.length_squared().max(1e-12).sqrt() * DVec2::new(1.0 / aspect, 1.0)
 }
 
-/// Noise of 256 cells a unit. The sine is of numbers that f32 holds only roughly, and so is the noise: what is random about
-/// it is another on each device.
+/// Returns noise with 256 cells per unit. The sine's argument has low precision in f32, so the noise differs between
+/// devices.
 pub fn starburst_noise(x: f64) -> f64 {
     let at = (x - x.floor()) * 256.0 - 0.5;
     let hash = |cell: f64| {
@@ -33,7 +33,7 @@ pub fn starburst_noise(x: f64) -> f64 {
     0.5 + 0.5 * (hash(cell) + (hash(cell + 1.0) - hash(cell)) * (at - cell))
 }
 
-/// Share of the flare that is left at `uv`.
+/// Returns the share of the flare that remains at `uv`.
 pub fn starburst(uv: DVec2, turn: f64) -> f64 {
     let v = uv - 0.5001;
     let d = v.length();
@@ -46,7 +46,8 @@ pub fn starburst(uv: DVec2, turn: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Ghost 0 is the picture turned about its middle, and a spacing of 1 has ghost 1 in the middle.
+    /// Verifies that ghost 0 is the image mirrored about its center, and that a spacing of 1 moves ghost 1 to the
+    /// center.
     #[test]
     fn ghosts_lie_on_the_line_through_the_middle() {
         let uv = DVec2::new(0.2, 0.7);
@@ -56,7 +57,8 @@ mod tests {
         assert!(aside.perp_dot(uv - 0.5).abs() < 1e-12);
     }
 
-    /// The halo's place is as far from the middle in every direction, counted in heights; nothing divides by zero there.
+    /// Verifies that the halo has the same radius in every direction, in image heights, and that nothing divides by
+    /// zero.
     #[test]
     fn directions_have_a_length_everywhere() {
         for uv in [DVec2::splat(0.5), DVec2::splat(0.5001), DVec2::new(0.0, 1.0), DVec2::new(0.9, 0.5)] {
@@ -66,7 +68,7 @@ mod tests {
         assert!((flare_direction(DVec2::new(0.9, 0.2), 2.0) * DVec2::new(2.0, 1.0)).length() > 1.0 - 1e-9);
     }
 
-    /// Noise as Filament's random numbers: 0.5 to 1, a mean of 0.75, and no step within 256 cells.
+    /// Verifies the range of Filament's random numbers: 0.5 to 1, with a mean of 0.75 and no step within 256 cells.
     #[test]
     fn rays_are_shares() {
         let all: Vec<f64> = (0..4096).map(|i| starburst_noise(f64::from(i) / 4096.0)).collect();

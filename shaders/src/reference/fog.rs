@@ -1,26 +1,26 @@
 //! Mirror of `wgsl/lib/fog.wgsl`.
 
-/// Exponent up to which density is followed along a ray.
+/// Maximum exponent to which density is evaluated along a ray.
 const MAX_EXPONENT: f64 = 40.0;
 
-/// Mean of e^(-x t) over t in 0…1.
+/// Returns the mean of e^(-x t) for t in 0…1.
 pub fn mean_decay(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { -(-x.clamp(-MAX_EXPONENT, MAX_EXPONENT)).exp_m1() / x }
 }
 
-/// Optical depth of a ray whose first `start_m` are clear.
+/// Returns the optical depth of a ray whose first `start_m` meters are clear.
 pub fn fog_optical_depth(density: f64, decay: f64, start_m: f64, way_m: f64, exact: f64) -> f64 {
     let clear = exact * (start_m / way_m.max(1e-6)).clamp(0.0, 1.0);
     let reached = (-(decay * clear).clamp(-MAX_EXPONENT, MAX_EXPONENT)).exp();
     density * (way_m - start_m).max(0.0) * (reached * mean_decay(decay * (1.0 - clear))).min(1e20)
 }
 
-/// Share of what is behind fog that it hides.
+/// Returns the opacity of fog.
 pub fn fog_opacity(optical_depth: f64, most: f64) -> f64 {
     (-(-optical_depth).exp_m1()).min(most)
 }
 
-/// Share of the sun's light that fog scatters toward the eye.
+/// Returns the share of sunlight that fog scatters toward the eye.
 pub fn fog_glow(cos_to_sun: f64, size: f64) -> f64 {
     cos_to_sun.clamp(0.0, 1.0).powf(size)
 }
@@ -29,7 +29,7 @@ pub fn fog_glow(cos_to_sun: f64, size: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Density along the ray, summed at the middles of equal steps: the truth, which knows no closed form.
+    /// Sums the density along the ray at the midpoints of equal steps, as a reference without a closed form.
     fn summed(density: f64, decay: f64, start_m: f64, way_m: f64) -> f64 {
         const STEPS: u32 = 20_000;
         let step_m = (way_m - start_m).max(0.0) / f64::from(STEPS);
@@ -37,7 +37,7 @@ mod tests {
         (0..STEPS).map(|i| density * (-decay * at(i) / way_m).exp() * step_m).sum()
     }
 
-    /// Midpoint sums of so many steps err by decay² / (24 · steps²), which is below 1e-7 here.
+    /// Verifies the closed form. The midpoint rule has an error of decay² / (24 · steps²), which is below 1e-7 here.
     #[test]
     fn optical_depth_is_the_integral_of_density() {
         let mut filament_errs = 0.0_f64;
@@ -54,8 +54,8 @@ mod tests {
         assert!(filament_errs > 0.02, "the mean of the whole way is not that of its end: {filament_errs}");
     }
 
-    /// No fog hides nothing however far, deep fog hides all, and heights of a kilometer either way neither overflow nor turn
-    /// negative.
+    /// Verifies extremes: zero density hides nothing and dense fog hides everything. Heights of ±1 km neither overflow
+    /// nor turn negative.
     #[test]
     fn hard_case_53_transmittance_stays_a_share() {
         for way_m in [0.0, 1e-6, 1.0, 1e5, 1e10] {

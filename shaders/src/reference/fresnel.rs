@@ -4,17 +4,17 @@ use glam::DVec3;
 
 use super::math::{pow5, saturate};
 
-/// Schlick's approximation.
+/// Evaluates Schlick's approximation.
 pub fn f_schlick(f0: DVec3, f90: f64, voh: f64) -> DVec3 {
     f0 + (DVec3::splat(f90) - f0) * pow5(1.0 - saturate(voh))
 }
 
-/// The same for one channel.
+/// Evaluates Schlick's approximation for one channel.
 pub fn f_schlick_scalar(f0: f64, f90: f64, voh: f64) -> f64 {
     f0 + (f90 - f0) * pow5(1.0 - saturate(voh))
 }
 
-/// Reflectance at grazing for an f0.
+/// Returns the reflectance at grazing incidence for an f0.
 pub fn f90_from_f0(f0: DVec3) -> f64 {
     saturate(16.5 * (f0.x + f0.y + f0.z))
 }
@@ -44,7 +44,7 @@ mod tests {
 
     #[test]
     fn glass_is_within_the_known_error_of_the_true_curve() {
-        // Unpolarised Fresnel of index 1.5 against Schlick: at most 0.036 (accuracy 1.1).
+        // Unpolarized Fresnel of index 1.5 against Schlick: at most 0.036 (accuracy 1.1).
         let exact = |c: f64| {
             let g = (1.5_f64 * 1.5 - 1.0 + c * c).sqrt();
             let a = ((g - c) / (g + c)).powi(2);

@@ -2,14 +2,14 @@
 
 use glam::DVec2;
 
-/// Where a distance ahead of the eye lies among the slices: in the slice of its whole part.
+/// Returns the fractional slice index of a distance ahead of the eye; its integer part is the slice.
 pub fn froxel_slice(ahead_m: f64, scale: f64, offset: f64, slices: u32) -> f64 {
-    // What is no number is not above 0.
+    // The comparison is false for NaN.
     let ahead = if ahead_m > 0.0 { ahead_m.clamp(1e-30, 1e30) } else { 1e-30 };
     (ahead.log2() * scale + offset).clamp(0.0, f64::from(slices) - 1.0)
 }
 
-/// Number of the froxel of a pixel: slice by slice, row by row.
+/// Returns the froxel index of a pixel, ordered by slice, row and column.
 pub fn froxel_number(pixel: DVec2, tiles_per_px: f64, slice: f64, counts: [u32; 3]) -> u32 {
     let tile = |at: f64, count: u32| ((at.max(0.0) * tiles_per_px) as u32).min(count - 1);
     ((slice as u32).min(counts[2] - 1) * counts[1] + tile(pixel.y, counts[1])) * counts[0] + tile(pixel.x, counts[0])
@@ -19,7 +19,7 @@ pub fn froxel_number(pixel: DVec2, tiles_per_px: f64, slice: f64, counts: [u32; 
 mod tests {
     use super::*;
 
-    /// Ends of slices between 5 m and 100 m are at equal ratios.
+    /// Verifies that slices between 5 m and 100 m end at equal ratios.
     #[test]
     fn slices_end_where_they_should() {
         let slices = 16;

@@ -2,13 +2,13 @@
 
 use glam::{DVec2, DVec4};
 
-/// Clip position of vertex 0, 1 or 2.
+/// Returns the clip position of vertex 0, 1 or 2.
 pub fn fullscreen_position(vertex: u32, depth: f64) -> DVec4 {
     let corner = [DVec2::new(-1.0, -1.0), DVec2::new(3.0, -1.0), DVec2::new(-1.0, 3.0)];
     corner[vertex as usize % 3].extend(depth).extend(1.0)
 }
 
-/// Texture coordinates of a clip position.
+/// Returns the texture coordinates of a clip position.
 pub fn uv_from_clip(clip: DVec2) -> DVec2 {
     DVec2::new(clip.x * 0.5 + 0.5, 0.5 - clip.y * 0.5)
 }

@@ -2,19 +2,19 @@
 
 use glam::DVec2;
 
-/// Whether the contrast is worth filtering.
+/// Returns true if the contrast is high enough to filter.
 pub fn fxaa_is_edge(luma_min: f64, luma_max: f64, threshold: f64, threshold_min: f64) -> bool {
     luma_max - luma_min >= (luma_max * threshold).max(threshold_min)
 }
 
-/// Unit direction along the edge, or zero.
+/// Returns the unit direction along the edge, or zero.
 pub fn fxaa_direction(nw: f64, ne: f64, sw: f64, se: f64) -> DVec2 {
     let (rising, falling) = (sw - ne, se - nw);
     let d = DVec2::new(rising + falling, rising - falling);
     if d.length_squared() < 1e-12 { DVec2::ZERO } else { d.normalize() }
 }
 
-/// How far out the second pair of taps lies, in texels.
+/// Returns the distance of the second tap pair, in texels.
 pub fn fxaa_span_texels(direction: DVec2, range: f64, sharpness: f64) -> f64 {
     let largest = direction.abs().max_element();
     2.0 * (range / (largest * sharpness * 0.015).max(1e-6)).min(3.0)

@@ -3,10 +3,10 @@
 use super::primaries::{oklab_from_rec709, rec709_from_oklab};
 use glam::DVec3;
 
-/// How far a channel may lie beyond 0…1 before it counts as outside.
+/// Tolerance by which a channel may exceed 0…1 before gamut mapping applies.
 pub const GAMUT_SLACK: f64 = 0.03;
 
-/// Linear Rec.709 within 0…1, but for the slack: what lies outside is moved at its hue in OkLab toward a grey.
+/// Maps linear Rec.709 into 0…1 within the tolerance. Colors outside move toward a gray at constant OkLab hue.
 pub fn map_into_gamut(color: DVec3) -> DVec3 {
     if color.min_element() >= -GAMUT_SLACK && color.max_element() <= 1.0 + GAMUT_SLACK {
         return color;

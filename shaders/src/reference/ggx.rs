@@ -4,13 +4,13 @@ use glam::DVec3;
 
 use super::math::{PI, mix};
 
-/// alpha from perceptual roughness, held above `floor`.
+/// Returns alpha from perceptual roughness, at least `floor`.
 pub fn alpha_from_roughness(roughness: f64, floor: f64) -> f64 {
     let r = roughness.clamp(floor, 1.0);
     r * r
 }
 
-/// GGX normal distribution in 1/sr.
+/// Evaluates the GGX normal distribution in 1/sr.
 pub fn d_ggx(noh: f64, alpha: f64) -> f64 {
     let c = noh.clamp(0.0, 1.0);
     let a2 = alpha * alpha;
@@ -18,7 +18,7 @@ pub fn d_ggx(noh: f64, alpha: f64) -> f64 {
     a2 / (PI * q * q)
 }
 
-/// The same from the vectors: the sine from their cross product.
+/// Evaluates the GGX normal distribution from vectors, with the sine from their cross product.
 pub fn d_ggx_cross(n: DVec3, h: DVec3, noh: f64, alpha: f64) -> f64 {
     let c = noh.clamp(0.0, 1.0);
     let sine2 = if noh <= 0.0 { 1.0 } else { n.cross(h).length_squared() };
@@ -27,7 +27,7 @@ pub fn d_ggx_cross(n: DVec3, h: DVec3, noh: f64, alpha: f64) -> f64 {
     k * k / PI
 }
 
-/// Height-correlated Smith visibility.
+/// Evaluates height-correlated Smith visibility.
 pub fn v_smith_ggx_correlated(nov: f64, nol: f64, alpha: f64) -> f64 {
     let a2 = alpha * alpha;
     let lambda_v = nol * (nov * nov * (1.0 - a2) + a2).sqrt();
@@ -35,7 +35,7 @@ pub fn v_smith_ggx_correlated(nov: f64, nol: f64, alpha: f64) -> f64 {
     0.5 / (lambda_v + lambda_l).max(7.7e-6)
 }
 
-/// Hammon's approximation of it.
+/// Evaluates Hammon's approximation of height-correlated Smith visibility.
 pub fn v_smith_ggx_correlated_fast(nov: f64, nol: f64, alpha: f64) -> f64 {
     0.5 / mix(2.0 * nol * nov, nol + nov, alpha).max(7.7e-6)
 }
@@ -46,8 +46,7 @@ mod tests {
 
     const ROUGHNESS: [f64; 5] = [0.045, 0.089, 0.3, 0.6, 1.0];
 
-    /// ∫ over the hemisphere of f(θ) about the pole, the angle squeezed toward it so that
-    /// narrow lobes are resolved.
+    /// Integrates f(θ) over the hemisphere, with angles concentrated near the pole to resolve narrow lobes.
     fn integrate(f: impl Fn(f64) -> f64) -> f64 {
         let n = 20_000;
         let cell = |i: i32| {
@@ -126,8 +125,8 @@ mod tests {
                 assert!((ratio - 1.0).abs() < 1e-6, "{r} {theta}: {ratio}");
             }
         }
-        // accuracy 1.2: with |n| = 0.999, theta = 0.005 and alpha = 0.0079 the cross form reads
-        // 1.004 times the truth and the other 0.002 times.
+        // Accuracy 1.2: with |n| = 0.999, theta = 0.005 and alpha = 0.0079, the cross form gives 1.004 times the
+        // reference and the other form 0.002 times.
         let (n, h, alpha) = (DVec3::Z * 0.999, angle(0.005), 0.007_9);
         let truth = d_ggx(h.z, alpha);
         assert!((d_ggx_cross(n, h, n.dot(h), alpha) / truth - 1.004).abs() < 0.002);

@@ -1,4 +1,4 @@
-//! Mirror of `wgsl/effect/grade.wgsl`: all of color grading, in the numbers that the shader gets.
+//! Mirror of `wgsl/effect/grade.wgsl`: the complete color grading, with the numbers that the shader gets.
 
 use super::grading::{
     CONTRAST_PIVOT, contrast_about, linear_from_log_c, log_c_from_linear, saturation, slope_offset_power,
@@ -9,52 +9,52 @@ use super::primaries::{LUMINANCE_REC709, LUMINANCE_REC2020, REC2020_FROM_REC709}
 use crate::layout::Grading;
 use glam::{DMat3, DVec3};
 
-/// Color grading as it is computed: [`Grading`] with its matrices worked out and its numbers within their ranges.
+/// Precomputed color grading: the matrices of [`Grading`], with all parameters clamped to their ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grade {
-    /// From linear Rec.709 to the working primaries, adapted from the white of the scene.
+    /// Linear Rec.709 to the working primaries, including white balance.
     pub into: DMat3,
-    /// Of channels in the working primaries.
+    /// Channel mixer in the working primaries.
     pub mixer: DMat3,
-    /// From the working primaries to linear Rec.709.
+    /// Working primaries to linear Rec.709.
     pub out_of: DMat3,
-    /// Of luminance in the working primaries.
+    /// Luminance weights of the working primaries.
     pub weights: DVec3,
-    /// Factor on light.
+    /// Factor on scene light.
     pub exposure: f64,
-    /// 0…1.
+    /// Amount of night adaptation, 0…1.
     pub night: f64,
     /// Factors on shadows, midtones and highlights.
     pub tones: [DVec3; 3],
-    /// Where shadows end and highlights begin.
+    /// Luminance limits at which shadows end and highlights begin.
     pub ranges: [f64; 4],
-    /// Of LogC.
+    /// Slope in LogC.
     pub slope: DVec3,
-    /// Of LogC.
+    /// Offset in LogC.
     pub offset: DVec3,
-    /// Of LogC.
+    /// Exponent in LogC.
     pub power: DVec3,
-    /// About the pivot in LogC.
+    /// Contrast around the pivot in LogC.
     pub contrast: f64,
-    /// 1 changes nothing.
+    /// Vibrance; 1 changes nothing.
     pub vibrance: f64,
-    /// 1 changes nothing.
+    /// Saturation; 1 changes nothing.
     pub saturation: f64,
-    /// Exponent below the middle.
+    /// Exponent below `middle`.
     pub shadow_gamma: DVec3,
-    /// Where the power ends and the line begins.
+    /// Value at which the power ends and the line begins.
     pub middle: DVec3,
-    /// Slope above the middle.
+    /// Slope above `middle`.
     pub highlight_scale: DVec3,
 }
 
 impl Grade {
-    /// Works `grading` out. The working primaries are Rec.2020, or Rec.709 for Filament's FILMIC, which is graded there; its
-    /// white balance takes the numbers for Rec.2020 all the same.
+    /// Computes a grade from `grading`. The working primaries are Rec.2020; false selects Rec.709 for Filament's FILMIC
+    /// curve. The white balance always uses the numbers for Rec.2020.
     pub fn new(grading: &Grading, rec2020: bool) -> Self {
         let g = grading;
         let wide = if rec2020 { REC2020_FROM_REC709 } else { DMat3::IDENTITY };
-        // Neutral settings are neutral to the bit, and not by way of the daylight locus.
+        // Neutral settings are exactly neutral, without rounding errors of the daylight locus.
         let balance = match (g.temperature, g.tint) {
             (0.0, 0.0) => DMat3::IDENTITY,
             (temperature, tint) => white_balance(temperature.into(), tint.into()),
@@ -86,7 +86,7 @@ impl Grade {
         }
     }
 
-    /// Linear Rec.709 light, graded: negative where Rec.709 does not reach it.
+    /// Grades linear Rec.709 light. Results outside Rec.709 have negative channels.
     pub fn apply(&self, color: DVec3) -> DVec3 {
         let positive = |c: DVec3| c.clamp(DVec3::ZERO, DVec3::splat(65504.0));
         let mut c = positive(color * self.exposure);
@@ -115,7 +115,7 @@ mod tests {
         for rec2020 in [true, false] {
             let neutral = Grade::new(&Grading::NEUTRAL, rec2020);
             for color in [DVec3::new(0.2, 4.0, 0.0), DVec3::splat(0.18), DVec3::new(50.0, 0.0, 0.001)] {
-                // LogC loses what a difference of two logarithms does.
+                // The LogC round trip loses the precision of a difference of logarithms.
                 assert!((neutral.apply(color) - color).length() < 1e-8 * (1.0 + color.length()), "{color}");
             }
             assert!(neutral.apply(DVec3::new(-1.0, 0.5, -0.2)).abs_diff_eq(DVec3::new(0.0, 0.5, 0.0), 1e-9));

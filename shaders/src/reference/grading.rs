@@ -1,26 +1,26 @@
-//! Mirror of `wgsl/lib/grading.wgsl`, and the white balance that the CPU works out.
+//! Mirror of `wgsl/lib/grading.wgsl`, and the white balance that the CPU computes.
 
 use super::primaries::{XYZ_FROM_REC2020, rows};
 use glam::{DMat3, DVec3};
 
-/// What contrast leaves where it is, in LogC: 18 % grey in ACEScct.
+/// LogC value that contrast leaves unchanged: 18 % gray in ACEScct.
 pub const CONTRAST_PIVOT: f64 = 0.413_588_4;
 
-/// LogC from linear light.
+/// Converts linear light to LogC.
 pub fn log_c_from_linear(color: DVec3) -> DVec3 {
     let log_c = |x: f64| 0.244_161 * (5.555_556 * x.clamp(0.0, 1e30) + 0.047_996).log10() + 0.386_036;
     DVec3::from_array(color.to_array().map(log_c))
 }
 
-/// Linear light from LogC.
+/// Converts LogC to linear light.
 pub fn linear_from_log_c(log_c: DVec3) -> DVec3 {
-    // As high as the shader's exponent goes.
+    // Same maximum exponent as in the shader.
     let power = |y: f64| 10.0_f64.powf(((y - 0.386_036) / 0.244_161).min(60.0 * 2.0_f64.log10()));
     let linear = |y: f64| (power(y) - 0.047_996) / 5.555_556;
     DVec3::from_array(log_c.to_array().map(linear))
 }
 
-/// Shares of shadows, midtones and highlights.
+/// Returns the weights of shadows, midtones and highlights.
 pub fn tonal_shares(y: f64, ranges: [f64; 4]) -> DVec3 {
     let step = |low: f64, high: f64| {
         let t = ((y - low) / (high - low)).clamp(0.0, 1.0);
@@ -30,40 +30,40 @@ pub fn tonal_shares(y: f64, ranges: [f64; 4]) -> DVec3 {
     DVec3::new(shadows, 1.0 - shadows - highlights, highlights)
 }
 
-/// x to the power p, and x itself for x ≤ 0.
+/// Returns x to the power p for x > 0, and x itself otherwise.
 pub fn positive_power(x: f64, p: f64) -> f64 {
     if x <= 0.0 { x } else { x.powf(p) }
 }
 
-/// (color · slope + offset)^power.
+/// Returns (color · slope + offset)^power.
 pub fn slope_offset_power(color: DVec3, slope: DVec3, offset: DVec3, power: DVec3) -> DVec3 {
     let base = (color * slope + offset).to_array();
     DVec3::from_array(std::array::from_fn(|c| positive_power(base[c], power[c])))
 }
 
-/// Distances from `pivot` times `amount`.
+/// Scales the distance from `pivot` by `amount`.
 pub fn contrast_about(color: DVec3, pivot: f64, amount: f64) -> DVec3 {
     (color - pivot) * amount + pivot
 }
 
-/// Distances from the grey of equal luminance times `amount`.
+/// Scales the distance from the gray of equal luminance by `amount`.
 pub fn saturation(color: DVec3, weights: DVec3, amount: f64) -> DVec3 {
     let grey = DVec3::splat(color.dot(weights));
     grey + (color - grey) * amount
 }
 
-/// Saturation by how red a color is.
+/// Scales saturation by an amount that depends on how red a color is.
 pub fn vibrance(color: DVec3, weights: DVec3, amount: f64) -> DVec3 {
     let red = (color.x - color.y.max(color.z)).clamp(-20.0, 20.0);
     saturation(color, weights, 1.0 + (amount - 1.0) / (1.0 + (-3.0 * red).exp()))
 }
 
-/// A power below the middle, a line above.
+/// Evaluates a power below the middle and a line above.
 pub fn toe_and_shoulder(x: f64, gamma: f64, middle: f64, scale: f64) -> f64 {
     if x <= middle { positive_power(x, gamma) / middle.powf(gamma - 1.0) } else { scale * (x - middle) + middle }
 }
 
-/// A color of another luminance at its hue.
+/// Changes the luminance of a color at constant hue.
 pub fn scale_luminance(color: DVec3, weights: DVec3, luminance_out: f64) -> DVec3 {
     let peak = color.max_element();
     if peak <= 1e-10 {
@@ -76,17 +76,18 @@ pub fn scale_luminance(color: DVec3, weights: DVec3, luminance_out: f64) -> DVec
     ratio * ((luminance_out - missing) / luminance.max(1e-30)) + reserves * added
 }
 
-/// Cone responses from XYZ by CAT16 (Li et al., "Comprehensive color solutions", 2017).
+/// Cone responses from XYZ with CAT16 (Li et al., "Comprehensive color solutions", 2017).
 const CAT16_FROM_XYZ: DMat3 =
     rows([0.401_288, 0.650_173, -0.051_461], [-0.250_268, 1.204_414, 0.045_854], [-0.002_079, 0.048_952, 0.953_127]);
 
-/// Adapts linear Rec.2020 light to another white. `temperature` and `tint` go from -1 to 1: colder or warmer along the
-/// daylight locus (CIE 15), greener or more magenta across it; beyond they are clamped. CPU only.
+/// Returns the matrix that adapts linear Rec.2020 light to another white. `temperature` and `tint` range from -1 to 1
+/// and are clamped. Temperature moves from cold to warm along the daylight locus (CIE 15), tint from green to magenta
+/// across it. CPU only.
 pub fn white_balance(temperature: f64, tint: f64) -> DMat3 {
     let (temperature, tint) = (temperature.clamp(-1.0, 1.0), tint.clamp(-1.0, 1.0));
     let daylight = |x: f64| -3.0 * x * x + 2.87 * x - 0.275;
     let cones = |x: f64, y: f64| CAT16_FROM_XYZ * (DVec3::new(x, y, 1.0 - x - y) / y.max(1e-5));
-    // Blue light lies closer to white in chromaticity than red light of the same difference to the eye.
+    // For the same perceived difference, blue light is closer to white in chromaticity than red light.
     let x = 0.312_71 - temperature * if temperature < 0.0 { 0.0214 } else { 0.066 };
     let (from, to) = (cones(x, daylight(x) + tint * 0.066), cones(0.312_71, 0.329_02));
     let adapt = CAT16_FROM_XYZ * XYZ_FROM_REC2020;
@@ -117,7 +118,7 @@ mod tests {
             for x in color.to_array() {
                 assert!((toe_and_shoulder(x, 1.0, 1.0, 1.0) - x).abs() < 1e-12 * (1.0 + x));
             }
-            // The daylight locus misses the white D65 by 1e-4.
+            // The daylight locus misses the D65 white point by 1e-4.
             assert!((white_balance(0.0, 0.0) * color - color).length() < 2e-3 * color.length());
         }
     }
@@ -128,7 +129,7 @@ mod tests {
         assert!(linear_from_log_c(DVec3::splat(-1.0)).x < 0.0, "below black");
     }
 
-    /// Hard case 48: black, less than black and far too much in LogC.
+    /// Hard case 48: zero, negative and very large values in LogC.
     #[test]
     fn hard_case_48_log_c_is_finite() {
         for x in [-0.008_64, -1.0, 0.0] {

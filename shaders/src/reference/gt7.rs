@@ -1,4 +1,4 @@
-//! Mirror of `wgsl/lib/gt7.wgsl`, from the curve's own parameters.
+//! Mirror of `wgsl/lib/gt7.wgsl`, computed from the curve's original parameters.
 
 use super::primaries::rows;
 use glam::{DMat3, DVec3};
@@ -14,12 +14,12 @@ const C1: f64 = 3424.0 / 4096.0;
 const C2: f64 = 2413.0 / 128.0;
 const C3: f64 = 2392.0 / 128.0;
 
-/// Cones of ICtCp from linear Rec.2020 (ITU-R BT.2100), in 4096ths.
+/// ICtCp cone responses from linear Rec.2020 (ITU-R BT.2100), in 4096ths.
 const CONES: DMat3 = rows([1688.0, 2146.0, 262.0], [683.0, 2951.0, 462.0], [99.0, 309.0, 3688.0]);
-/// ICtCp from the codes of its cones, in 4096ths.
+/// ICtCp from encoded cone responses, in 4096ths.
 const ICTCP: DMat3 = rows([2048.0, 2048.0, 0.0], [6610.0, -13613.0, 7003.0], [17933.0, -17390.0, -543.0]);
 
-/// Codes of PQ of nits.
+/// Encodes nits with PQ.
 pub fn pq_from_nits(nits: DVec3) -> DVec3 {
     each(nits, |x| {
         let y = (x / 10000.0).max(1e-20).powf(M1);
@@ -27,7 +27,7 @@ pub fn pq_from_nits(nits: DVec3) -> DVec3 {
     })
 }
 
-/// Nits of codes of PQ.
+/// Decodes PQ to nits.
 pub fn nits_from_pq(code: DVec3) -> DVec3 {
     each(code, |e| {
         let x = e.max(1e-20).powf(1.0 / M2).min(1.0);
@@ -35,17 +35,17 @@ pub fn nits_from_pq(code: DVec3) -> DVec3 {
     })
 }
 
-/// ICtCp of Rec.2020 in nits.
+/// Converts Rec.2020 in nits to ICtCp.
 pub fn ictcp_from_rec2020(nits: DVec3) -> DVec3 {
     ICTCP / 4096.0 * pq_from_nits(CONES / 4096.0 * nits)
 }
 
-/// Rec.2020 in nits of ICtCp.
+/// Converts ICtCp to Rec.2020 in nits.
 pub fn rec2020_from_ictcp(ictcp: DVec3) -> DVec3 {
     (CONES / 4096.0).inverse() * nits_from_pq((ICTCP / 4096.0).inverse() * ictcp)
 }
 
-/// The display's peak, in hundreds of nits.
+/// Peak luminance of the display, in hundreds of nits.
 const PEAK: f64 = 2.5;
 
 fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
@@ -53,7 +53,7 @@ fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The curve of one channel: alpha 0.25, middle 0.538, linear up to 0.444 of the peak, toe of strength 1.28.
+/// Evaluates the curve of one channel: alpha 0.25, middle 0.538, linear up to 0.444 of the peak, toe strength 1.28.
 pub fn gt7_curve(x: f64) -> f64 {
     let (alpha, middle, linear, toe) = (0.25, 0.538, 0.444, 1.28);
     let k = (linear - 1.0) / (alpha - 1.0);
@@ -64,7 +64,7 @@ pub fn gt7_curve(x: f64) -> f64 {
     (1.0 - share) * middle * (x.max(1e-10) / middle).powf(toe) + share * x
 }
 
-/// Rec.2020 of the scene to Rec.2020 of a display.
+/// Tone maps scene light to display light, both in Rec.2020.
 pub fn tone_gt7(color: DVec3) -> DVec3 {
     let c = color.clamp(DVec3::ZERO, DVec3::splat(100.0));
     let skewed = each(c, gt7_curve);
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn the_standards_known_values() {
-        // ST 2084: 100 nits are code 0.508, 10000 are 1.
+        // ST 2084: 100 nits have the code value 0.508, 10000 nits have 1.
         assert!((pq_from_nits(DVec3::splat(100.0)).x - 0.508_078).abs() < 1e-6);
         assert!((pq_from_nits(DVec3::splat(10000.0)).x - 1.0).abs() < 1e-12);
         for nits in [DVec3::new(1.0, 50.0, 200.0), DVec3::splat(250.0)] {

@@ -3,47 +3,47 @@
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
 
-/// The arc cosine of what is held between ±1.
+/// Returns the arc cosine of x clamped to ±1.
 pub fn acos_held(x: f64) -> f64 {
     x.clamp(-1.0, 1.0).acos()
 }
 
-/// Cosine-weighted light from the viewer's direction to the angle h.
+/// Integrates cosine-weighted light from the view direction to the angle h.
 pub fn slice_arc(h: f64, n: f64) -> f64 {
     0.25 * (n.cos() - (2.0 * h - n).cos() + 2.0 * h * n.sin())
 }
 
-/// The same over the whole slice.
+/// Integrates cosine-weighted light over a whole slice.
 pub fn slice_whole(n: f64) -> f64 {
     n.cos() + n * n.sin()
 }
 
-/// Share of a slice's light that comes from below the angle.
+/// Returns the share of a slice's light from below the angle.
 pub fn slice_share(angle: f64, n: f64) -> f64 {
     let held = angle.clamp(n - FRAC_PI_2, n + FRAC_PI_2);
     let below = slice_arc(n - FRAC_PI_2, n) + if held < 0.0 { -1.0 } else { 1.0 } * slice_arc(held, n);
     (below / slice_whole(n)).clamp(0.0, 1.0)
 }
 
-/// Direction in a slice from which the light between the horizons comes in the mean.
+/// Returns the mean direction, within a slice, of the light between the horizons.
 pub fn slice_bent(h0: f64, h1: f64, n: f64) -> DVec2 {
     let sine = |h: f64| 6.0 * (h - n).sin() - (3.0 * h - n).sin() - 3.0 * (h + n).sin();
     let cosine = |h: f64| -(3.0 * h - n).cos() - 3.0 * (h + n).cos();
     DVec2::new(16.0 * n.sin() + sine(h0) + sine(h1), 8.0 * n.cos() + cosine(h0) + cosine(h1)) / 12.0
 }
 
-/// The bits of those of 32 sectors that lie between two shares of a slice.
+/// Returns a mask of those of 32 sectors that lie between two shares of a slice.
 pub fn sector_bits(low: f64, high: f64, jitter: f64) -> u32 {
     let edge = |share: f64| (32.0 * share + jitter).floor().clamp(0.0, 32.0) as u32;
     (0..32).filter(|bit| (edge(low)..edge(high)).contains(bit)).fold(0, |bits, bit| bits | 1 << bit)
 }
 
-/// Turn of the slices of a texel.
+/// Returns the rotation of a texel's slices.
 pub fn slice_turn([x, y]: [i32; 2]) -> f64 {
     f64::from((x + y).rem_euclid(4) * 4 + x.rem_euclid(4)) / 16.0
 }
 
-/// Offset of the steps of a texel.
+/// Returns the step offset of a texel.
 pub fn slice_offset([x, y]: [i32; 2]) -> f64 {
     f64::from((y - x).rem_euclid(4)) / 4.0
 }
@@ -53,7 +53,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// Light in a slice is cos(θ - n)·|sin θ|: added up in small steps.
+    /// Sums the light of a slice, cos(θ - n)·|sin θ|, in small steps.
     fn added_up(from: f64, to: f64, n: f64, of: impl Fn(f64) -> f64) -> f64 {
         let steps = 20_000;
         let step = (to - from) / f64::from(steps);
@@ -80,12 +80,13 @@ mod tests {
             }
             assert_eq!((slice_share(-4.0, n), slice_share(4.0, n)), (0.0, 1.0));
         }
-        // All directions together are the hemisphere's light: slices weighted by how long the normal is in them.
+        // The directions together give the light of the hemisphere, with slices weighted by the length of the projected
+        // normal.
         for tilt in [0.0_f64, 0.7, 1.4] {
             let slices = 1000;
             let mean = (0..slices).map(|slice| {
                 let turn = PI * (f64::from(slice) + 0.5) / f64::from(slices);
-                // The normal (sin tilt, 0, cos tilt) in a slice through z that points to `turn`.
+                // The normal (sin tilt, 0, cos tilt), projected into a slice through z that points to `turn`.
                 let along = tilt.sin() * turn.cos();
                 slice_whole(along.atan2(tilt.cos())) * along.hypot(tilt.cos())
             });

@@ -2,13 +2,13 @@
 
 use super::math::saturate;
 
-/// Level to sample for a perceptual roughness.
+/// Returns the mip level to sample for a perceptual roughness.
 pub fn specular_lod(roughness: f64, roughness_one_lod: f64) -> f64 {
     let r = saturate(roughness);
     roughness_one_lod * r * (2.0 - r)
 }
 
-/// Perceptual roughness a level is filtered with.
+/// Returns the perceptual roughness that a mip level is filtered for.
 pub fn roughness_from_specular_lod(lod: f64, roughness_one_lod: f64) -> f64 {
     1.0 - saturate(1.0 - lod / roughness_one_lod.max(1e-6)).sqrt()
 }
@@ -31,7 +31,7 @@ mod tests {
             for i in 0..=100 {
                 let r = f64::from(i) / 100.0;
                 let back = roughness_from_specular_lod(specular_lod(r, levels), levels);
-                // The inverse has a root at one, where half of the digits go.
+                // The inverse has a root at one, which loses half of the digits.
                 assert!((back - r).abs() < 1e-7, "{r}: {back}");
             }
         }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Weighted sum with the luminance weights of Rec.709.
+/// Returns the weighted sum with the luminance weights of Rec.709.
 pub fn luminance(color: DVec3) -> f64 {
     color.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }

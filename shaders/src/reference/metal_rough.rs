@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-/// Diffuse albedo.
+/// Returns the diffuse albedo.
 pub fn diffuse_from_base_color(base_color: DVec3, metallic: f64) -> DVec3 {
     base_color * (1.0 - metallic)
 }
 
-/// Reflectance at normal incidence.
+/// Returns the reflectance at normal incidence.
 pub fn f0_from_base_color(base_color: DVec3, metallic: f64, dielectric_f0: DVec3) -> DVec3 {
     dielectric_f0.lerp(base_color, metallic)
 }

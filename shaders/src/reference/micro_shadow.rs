@@ -2,7 +2,7 @@
 
 use super::math::saturate;
 
-/// Share of a light that reaches the ground of a cavity.
+/// Returns the share of a light that reaches the bottom of a cavity.
 pub fn micro_shadowing(nol: f64, visibility: f64) -> f64 {
     saturate(nol / (1.0 - visibility.min(0.9999)).sqrt()).powi(2)
 }
@@ -11,7 +11,8 @@ pub fn micro_shadowing(nol: f64, visibility: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// An opening of half angle θ has a visibility of sin²θ: light within it arrives whole, light beyond it less and less.
+    /// Verifies that light inside the opening arrives completely and fades outside. An opening of half angle θ has a
+    /// visibility of sin²θ.
     #[test]
     fn light_within_the_opening_arrives() {
         for degrees in [10.0_f64, 30.0, 60.0, 80.0] {

@@ -2,38 +2,38 @@
 
 use glam::{DVec2, DVec4};
 
-/// Absorbance of what hides all behind it.
+/// Absorbance of an opaque surface.
 pub const OPAQUE_ABSORBANCE: f64 = 10.0;
 
-/// Total absorbance below which nothing is hidden.
+/// Total absorbance below which surfaces count as fully transparent.
 const LEAST_ABSORBANCE: f64 = 0.001;
 
-/// Absorbance of a surface of this alpha, 0…10.
+/// Returns the absorbance of a surface with this alpha, 0…10.
 pub fn absorbance(alpha: f64) -> f64 {
     (-(1.0 - alpha).max(1e-5).ln()).min(OPAQUE_ABSORBANCE)
 }
 
-/// What is let through by surfaces of this absorbance in total.
+/// Returns the transmittance of surfaces with this total absorbance.
 pub fn transmittance_of(total: f64) -> f64 {
     if total >= OPAQUE_ABSORBANCE { 0.0 } else { (-total.max(0.0)).exp() }
 }
 
-/// Distance ahead in m as the logarithm between the ends of a range: −1…1.
+/// Returns the logarithm of a distance in m, mapped from the range to −1…1.
 pub fn warped_distance(distance_m: f64, range: DVec2) -> f64 {
     (distance_m.max(1e-6).log2() * range.x + range.y).clamp(-1.0, 1.0)
 }
 
-/// The first four powers.
+/// Returns the first four powers.
 pub fn power_moments(at: f64) -> DVec4 {
     DVec4::new(at, at * at, at.powi(3), at.powi(4))
 }
 
-/// A number that can be divided by: `x`, or what is as small as `least` with its sign.
+/// Returns `x` if its magnitude is at least `least`; otherwise `least` with the sign of `x`.
 pub fn divisor(x: f64, least: f64) -> f64 {
     if x.abs() < least { least.copysign(if x < 0.0 { -1.0 } else { 1.0 }) } else { x }
 }
 
-/// Share of the light that passes all surfaces nearer than `at`; see the shader for the arguments.
+/// Returns the share of light that passes all surfaces nearer than `at`; see the shader for the arguments.
 pub fn moment_transmittance(total: f64, moments: DVec4, at: f64, bias: f64, overestimation: f64) -> f64 {
     if total < LEAST_ABSORBANCE {
         return 1.0;
@@ -66,10 +66,10 @@ mod tests {
     use super::*;
     use half::f16;
 
-    /// Bias for sums in 32 bits (the paper's), and in half floats.
+    /// Bias for 32-bit sums (from the paper) and for half-float sums.
     const BIAS: [f64; 2] = [5e-7, 2e-3];
 
-    /// Total and moments of layers of alpha at warped distances, added up one by one in half floats if `half`.
+    /// Sums absorbance and moments of layers, given by alpha and warped distance. Rounds to half floats if `half`.
     fn sums(layers: &[(f64, f64)], half: bool) -> (f64, DVec4) {
         let stored = |x: f64| if half { f16::from_f64(x).to_f64() } else { f64::from(x as f32) };
         let (mut total, mut moments) = (0.0, DVec4::ZERO);
@@ -87,7 +87,7 @@ mod tests {
         moment_transmittance(total, moments, at, BIAS[usize::from(half)], 0.25)
     }
 
-    /// One layer and two at equal distances: nothing is hidden in front of them, all they hide is behind.
+    /// Verifies that one layer, or two at equal distances, hide nothing in front and everything they should behind.
     #[test]
     fn hard_case_58_one_distance_hides_what_is_behind_it_and_nothing_in_front() {
         for half in [false, true] {
@@ -97,14 +97,14 @@ mod tests {
                     let most = if half { 0.03 } else { 2e-5 };
                     assert!(off.abs() < most, "{layers:?} at {at}, half {half}: off by {off}");
                 }
-                // On the layer itself a quarter of it counts.
+                // At the layer itself, a quarter of it counts.
                 let own = seen(&layers, 0.3, half);
                 assert!(own >= (1.0_f64 - alpha).powf(0.3) - 0.02 && own <= 1.0, "{own}");
             }
         }
     }
 
-    /// Two layers apart are known exactly: three distances have four moments to spare.
+    /// Verifies that two separate layers are resolved exactly; four moments suffice for them.
     #[test]
     fn two_layers_are_told_apart() {
         for half in [false, true] {
@@ -116,7 +116,7 @@ mod tests {
         }
     }
 
-    /// A layer that hides everything lets nothing through behind it, and all through before it.
+    /// Verifies that an opaque layer blocks all light behind it and none in front.
     #[test]
     fn hard_case_58_a_layer_that_hides_everything_hides_it() {
         for half in [false, true] {
@@ -127,8 +127,8 @@ mod tests {
         assert_eq!((transmittance_of(0.0), absorbance(0.0), absorbance(2.0)), (1.0, 0.0, 10.0));
     }
 
-    /// In half floats the paper's bias is not enough: behind a layer that hides everything, at the other end of the range, a surface
-    /// counts up to a quarter of what it would in front. With ours it counts nothing.
+    /// Verifies that half floats need a larger bias than the paper's. With the paper's bias, a surface far behind an
+    /// opaque layer keeps up to a quarter of its weight; with ours it keeps none.
     #[test]
     fn half_floats_need_a_larger_bias() {
         let worst = |bias: f64| {
@@ -145,7 +145,8 @@ mod tests {
         assert!(paper > 0.05 && own < 0.01, "{paper} {own}");
     }
 
-    /// Ranges of any depth, sums that rounding made impossible and distances at the ends give a share between none and all.
+    /// Verifies that the result stays in 0…1 for any range, for rounded and therefore inconsistent sums, and at the
+    /// ends.
     #[test]
     fn hard_case_58_nothing_makes_it_other_than_a_share() {
         let ats = [-1.0, -0.999, -1e-6, 0.0, 0.3, 0.999, 1.0];

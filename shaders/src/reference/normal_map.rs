@@ -4,20 +4,20 @@ use glam::DVec3;
 
 use super::numerics::{DEGENERATE_LENGTH2, normalize_or};
 
-/// Tangent-space normal from a texel, not normalized.
+/// Returns the tangent-space normal of a texel, not normalized.
 pub fn unpack_normal(texel: DVec3, scale: f64) -> DVec3 {
     let n = texel * 2.0 - 1.0;
     DVec3::new(n.x * scale, n.y * scale, n.z)
 }
 
-/// A unit vector perpendicular to the unit vector n.
+/// Returns a unit vector perpendicular to the unit vector n.
 pub fn duff_tangent(n: DVec3) -> DVec3 {
     let s = if n.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (s + n.z);
     DVec3::new(1.0 + s * n.x * n.x * a, s * n.x * n.y * a, -s * n.x)
 }
 
-/// The unit normal of an interpolated one, or `geometric` where it vanishes.
+/// Normalizes an interpolated normal; returns `geometric` for a zero vector.
 pub fn vertex_normal(interpolated: DVec3, geometric: DVec3) -> DVec3 {
     if interpolated.length_squared() < DEGENERATE_LENGTH2 {
         return geometric;
@@ -25,7 +25,7 @@ pub fn vertex_normal(interpolated: DVec3, geometric: DVec3) -> DVec3 {
     normalize_or(interpolated, geometric)
 }
 
-/// World-space unit normal from a tangent-space one.
+/// Returns the world-space unit normal of a tangent-space normal.
 pub fn apply_normal_map(tangent_space: DVec3, normal: DVec3, tangent: DVec3, handedness: f64) -> DVec3 {
     let (mut t, mut b) = (tangent, normal.cross(tangent));
     if b.length_squared() < DEGENERATE_LENGTH2 {

@@ -8,22 +8,22 @@ pub const HALF_MAX: f64 = 65504.0;
 /// Squared length below which a direction carries no information.
 pub const DEGENERATE_LENGTH2: f64 = 1e-12;
 
-/// x in [0, 65504]; NaN and negatives are 0.
+/// Clamps x to [0, 65504]; NaN and negative values give 0.
 pub fn saturate_half(x: f64) -> f64 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, HALF_MAX) }
 }
 
-/// `saturate_half` of each channel.
+/// Applies `saturate_half` to each channel.
 pub fn saturate_half3(color: DVec3) -> DVec3 {
     DVec3::from_array(color.to_array().map(saturate_half))
 }
 
-/// Whether no channel is NaN or infinite.
+/// Returns true if all channels are finite.
 pub fn all_finite3(color: DVec3) -> bool {
     color.is_finite()
 }
 
-/// v / |v|, or `fallback` where the largest component is at most 1e-30.
+/// Returns v / |v|, or `fallback` if the largest component is at most 1e-30.
 pub fn normalize_or(v: DVec3, fallback: DVec3) -> DVec3 {
     let largest = v.abs().max_element();
     if largest > 1e-30 { (v / largest).normalize() } else { fallback }

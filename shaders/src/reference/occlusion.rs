@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::math::{mix, saturate, smoothstep};
 
-/// Ambient occlusion with interreflection.
+/// Returns ambient visibility with interreflection.
 pub fn gtao_multi_bounce(visibility: f64, albedo: DVec3) -> DVec3 {
     let v = saturate(visibility);
     let bounced = |p: f64| {
@@ -15,13 +15,13 @@ pub fn gtao_multi_bounce(visibility: f64, albedo: DVec3) -> DVec3 {
     DVec3::from_array(albedo.to_array().map(bounced))
 }
 
-/// Specular occlusion from ambient occlusion alone.
+/// Returns specular occlusion from ambient occlusion alone.
 pub fn specular_occlusion(nov: f64, visibility: f64, alpha: f64) -> f64 {
     let open = (nov + visibility).max(0.0);
     saturate(open.powf((-16.0 * alpha - 1.0).exp2()) - 1.0 + visibility)
 }
 
-/// Solid angle that two spherical caps share, over 2π.
+/// Returns the solid angle of the intersection of two spherical caps, divided by 2π.
 pub fn spherical_caps_overlap(cos_cap1: f64, cos_cap2: f64, cos_distance: f64) -> f64 {
     let angle = |c: f64| c.clamp(-1.0, 1.0).acos();
     let (r1, r2, d) = (angle(cos_cap1), angle(cos_cap2), angle(cos_distance));
@@ -30,7 +30,7 @@ pub fn spherical_caps_overlap(cos_cap1: f64, cos_cap2: f64, cos_distance: f64) -
     (1.0 - cos_cap1.max(cos_cap2)) * x * x * (3.0 - 2.0 * x)
 }
 
-/// Specular occlusion from a bent normal.
+/// Returns specular occlusion from a bent normal.
 pub fn specular_occlusion_cones(bent_normal: DVec3, r: DVec3, visibility: f64, alpha: f64) -> f64 {
     let cos_open = (1.0 - saturate(visibility)).sqrt();
     let cos_lobe = 10.0_f64.powf(-alpha * alpha);
@@ -39,7 +39,7 @@ pub fn specular_occlusion_cones(bent_normal: DVec3, r: DVec3, visibility: f64, a
     mix(1.0, occlusion, smoothstep(0.01, 0.09, alpha))
 }
 
-/// How much of a reflection survives below the horizon.
+/// Returns the share of a reflection that remains below the horizon.
 pub fn horizon_occlusion(r: DVec3, normal: DVec3) -> f64 {
     saturate(1.0 + r.dot(normal)).powi(2)
 }
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn bounces_are_within_the_known_error_of_a_spherical_cavity() {
-        // V/(1 - ρ(1 - V)); accuracy 1.6: RMS 0.077, ignoring bounces 0.211.
+        // V/(1 - ρ(1 - V)); accuracy 1.6: RMS 0.077, or 0.211 without bounces.
         let (mut ours, mut ignored, mut n) = (0.0, 0.0, 0);
         for i in 1..=100 {
             for j in 0..100 {
@@ -85,7 +85,7 @@ mod tests {
             assert_eq!(specular_occlusion(0.5, 1.0, alpha), 1.0);
             assert_eq!(specular_occlusion(0.5, 0.0, alpha), 0.0);
         }
-        // In between, rough lobes follow the occlusion and smooth ones ignore it.
+        // For partial occlusion, rough lobes follow the occlusion and smooth lobes ignore it.
         assert!((specular_occlusion(0.5, 0.5, 1.0) - 0.5).abs() < 1e-3);
         assert!((specular_occlusion(0.8, 0.5, 0.002) - 0.637).abs() < 5e-3);
     }
@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(spherical_caps_overlap(small, large, 2.0_f64.cos()), 0.0);
         let inside = spherical_caps_overlap(small, large, 1.0);
         assert!((inside - (1.0 - small)).abs() < 1e-12);
-        // Between the two, against counting points: the smoothstep errs by some 6 %.
+        // Intermediate overlap against counted points: the smoothstep has an error of about 6 %.
         for d in [0.5_f64, 0.7, 0.9, 1.1] {
             let axis = DVec3::new(d.sin(), 0.0, d.cos());
             let (mut hits, rings, columns) = (0.0, 400, 400);

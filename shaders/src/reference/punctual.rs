@@ -2,25 +2,25 @@
 
 use super::math::{saturate, sq};
 
-/// Smallest squared distance, in m².
+/// Minimum squared distance, in m².
 pub const PUNCTUAL_MIN_DISTANCE2: f64 = 1e-4;
 
-/// Inverse square falloff times the range window, in 1/m².
+/// Returns inverse square falloff times the range window, in 1/m².
 pub fn distance_attenuation(distance2: f64, inv_range2: f64) -> f64 {
     saturate(1.0 - sq(distance2 * inv_range2)) / distance2.max(PUNCTUAL_MIN_DISTANCE2)
 }
 
-/// Inverse square falloff times the square of the range window, in 1/m².
+/// Returns inverse square falloff times the square of the range window, in 1/m².
 pub fn distance_attenuation_squared(distance2: f64, inv_range2: f64) -> f64 {
     sq(saturate(1.0 - sq(distance2 * inv_range2))) / distance2.max(PUNCTUAL_MIN_DISTANCE2)
 }
 
-/// Share that punctual lights keep on a surface far from the eye.
+/// Returns the fade factor of punctual lights on a surface far from the eye.
 pub fn light_far_fade(eye_distance2: f64, inv_far2: f64) -> f64 {
     saturate(5.0 - 5.0 * (eye_distance2 * inv_far2))
 }
 
-/// Cone falloff of a spot light.
+/// Returns the cone falloff of a spot light.
 pub fn spot_attenuation(cos_angle: f64, scale: f64, offset: f64) -> f64 {
     sq(saturate(cos_angle * scale + offset))
 }
@@ -44,7 +44,7 @@ mod tests {
         assert!((distance_attenuation(6.25, inv) - 0.9375 / 6.25).abs() < 1e-12, "half way");
     }
 
-    /// Half way to the range, glTF's window is 15/16 and Filament's its square.
+    /// Verifies that at half the range, glTF's window is 15/16 and Filament's is its square.
     #[test]
     fn filaments_window_is_the_square_of_gltfs() {
         let inv = 1.0 / (5.0 * 5.0);

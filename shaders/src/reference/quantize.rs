@@ -2,30 +2,30 @@
 
 use glam::{DVec3, DVec4};
 
-/// Largest finite number of ten bits.
+/// Largest finite 10-bit float.
 pub const UFLOAT10_MAX: f64 = 64512.0;
-/// Largest finite number of eleven bits.
+/// Largest finite 11-bit float.
 pub const UFLOAT11_MAX: f64 = 65024.0;
 /// Largest finite half float.
 pub const FLOAT16_MAX: f64 = 65504.0;
 
-/// x rounded to `bits` mantissa bits with five bits of exponent.
+/// Rounds x to `bits` mantissa bits and five exponent bits.
 pub fn quantize_mantissa(x: f64, bits: u32, toward_zero: bool) -> f64 {
     let exponent = x.abs().max(f64::MIN_POSITIVE).log2().floor().max(-14.0) as i32;
-    // log2 rounds: a number just below a power of two may come out as that power.
+    // log2 rounds: a value just below a power of two may return that power.
     let exponent = if x.abs() < 2.0_f64.powi(exponent) && exponent > -14 { exponent - 1 } else { exponent };
     let spacing = 2.0_f64.powi(exponent - bits as i32);
     let steps = x / spacing;
     (if toward_zero { steps.trunc() } else { steps.round_ties_even() }) * spacing
 }
 
-/// What an Rgba16Float texture keeps of a color.
+/// Quantizes a color as an Rgba16Float texture does.
 pub fn quantize_rgba16float(color: DVec4, toward_zero: bool) -> DVec4 {
     let kept = color.to_array().map(|x| quantize_mantissa(x.clamp(-FLOAT16_MAX, FLOAT16_MAX), 10, toward_zero));
     DVec4::from_array(kept)
 }
 
-/// What an Rg11b10Ufloat texture keeps of a color.
+/// Quantizes a color as an Rg11b10Ufloat texture does.
 pub fn quantize_rg11b10ufloat(color: DVec3, toward_zero: bool) -> DVec4 {
     let keep = |x: f64, most, bits| quantize_mantissa(x.clamp(0.0, most), bits, toward_zero);
     DVec4::new(keep(color.x, UFLOAT11_MAX, 6), keep(color.y, UFLOAT11_MAX, 6), keep(color.z, UFLOAT10_MAX, 5), 1.0)
@@ -35,7 +35,8 @@ pub fn quantize_rg11b10ufloat(color: DVec3, toward_zero: bool) -> DVec4 {
 mod tests {
     use super::*;
 
-    /// Every finite number of a format without a sign, in order, from its definition: exponent in the five upper bits.
+    /// Returns every finite number of an unsigned format, in order, from its definition: exponent in the five upper
+    /// bits.
     fn numbers(bits: u32) -> Vec<f64> {
         let code = |code: u32| {
             let (exponent, mantissa) = (code >> bits, f64::from(code & ((1 << bits) - 1)) * 0.5_f64.powi(bits as i32));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// A color as numbers of the library; of none that a half float does not hold.
+/// Converts a color to the library's number type, clamped to the range of half floats.
 pub fn to_real3(color: DVec3) -> DVec3 {
     color
 }

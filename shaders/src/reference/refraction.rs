@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// From the point of entry to the point of exit of a sphere.
+/// Returns the vector from the entry point to the exit point of a sphere.
 pub fn refracted_path(view: DVec3, normal: DVec3, ior: f64, thickness: f64) -> DVec3 {
     let eta = 1.0 / ior.max(1.0);
     let cosine = normal.dot(view).clamp(0.0, 1.0);
@@ -11,29 +11,30 @@ pub fn refracted_path(view: DVec3, normal: DVec3, ior: f64, thickness: f64) -> D
     ray * (thickness * inside)
 }
 
-/// Index of refraction of red, green and blue: by half of what an Abbe number of 20 / `dispersion` spreads to each side.
+/// Returns the index of refraction for red, green and blue. Red and blue each differ from green by half the spread for
+/// an Abbe number of 20 / `dispersion`.
 pub fn dispersed_ior(ior: f64, dispersion: f64) -> DVec3 {
     let spread = (ior - 1.0) * dispersion / 20.0;
     DVec3::new(ior - 0.5 * spread, ior, ior + 0.5 * spread).clamp(DVec3::ONE, DVec3::splat(1e4))
 }
 
-/// Share of each channel that is left.
+/// Returns the transmittance of each channel.
 pub fn transmittance(absorption_per_m: DVec3, distance_m: f64) -> DVec3 {
     (-absorption_per_m * distance_m).exp()
 }
 
-/// Standard deviation of the direction of transmitted light, in radians.
+/// Returns the standard deviation of the direction of transmitted light, in radians.
 pub fn transmission_spread(alpha: f64, ior: f64) -> f64 {
     alpha * (ior - 1.0).max(0.0) / (2.0 * 2.0_f64.ln()).sqrt()
 }
 
-/// Standard deviation of Filament's blur of what is behind a rough body, in radians from the eye.
+/// Returns the standard deviation of Filament's blur behind a rough refractive surface, in radians from the eye.
 pub fn seen_transmission_spread(roughness: f64, ior: f64) -> f64 {
     let less = (3.0 / ior.max(1.0) - 2.0).clamp(0.0, 1.0);
     (roughness * (1.0 - less)).powi(2) / 10.0_f64.sqrt()
 }
 
-/// Level of a pyramid for a blur of level 0.
+/// Returns the pyramid level for a blur, given in texels of level 0.
 pub fn pyramid_lod(sigma_texels: f64) -> f64 {
     (sigma_texels.max(1e-3) / (5.0_f64 / 12.0).sqrt()).log2().max(0.0)
 }
@@ -62,7 +63,7 @@ mod tests {
         assert!(refracted_path(DVec3::NEG_Z, normal, 1.0, 1.0).is_finite(), "a normal that faces away");
     }
 
-    /// An Abbe number of 20 is (n − 1) over the spread from red to blue.
+    /// Verifies the dispersion for an Abbe number of 20, which is (n − 1) over the spread from red to blue.
     #[test]
     fn the_spread_of_indices_is_that_of_the_abbe_number() {
         let [red, green, blue] = dispersed_ior(1.5, 1.0).to_array();
@@ -71,7 +72,8 @@ mod tests {
         assert_eq!(dispersed_ior(1.7, 0.0), DVec3::splat(1.7));
     }
 
-    /// Half of GGX's slopes, of density 1/(π α² (1 + m²/α²)²), are below α; half of a Gaussian's below σ·√(2 ln 2).
+    /// Verifies the spread. Half of GGX's slopes, with density 1/(π α² (1 + m²/α²)²), are below α; half of a Gaussian's
+    /// are below σ·√(2 ln 2).
     #[test]
     fn the_spread_holds_half_of_the_facets() {
         let alpha = 0.3;
@@ -82,8 +84,9 @@ mod tests {
         assert_eq!(transmission_spread(0.5, 1.0), 0.0);
     }
 
-    /// Filament's level is 0.8614 (2 log₂ r − log₂(√2 σ₀ s)) for pixels of s radians. Level 0 is not blurred, level 1 by a kernel
-    /// of σ₀ = 11/3 pixels, and each further one by √5 of it: r² / (√10 s) pixels.
+    /// Verifies Filament's blur. Its level is 0.8614 (2 log₂ r − log₂(√2 σ₀ s)) for pixels of s radians. Level 0 is not
+    /// blurred. Level 1 has a kernel of σ₀ = 11/3 pixels, and each further level is √5 times wider: r² / (√10 s)
+    /// pixels.
     #[test]
     fn filaments_blur_is_that_of_its_levels() {
         let (pixel_rad, sigma_0) = (1e-3, 22.0 / 6.0);
@@ -97,14 +100,14 @@ mod tests {
         assert!(seen_transmission_spread(0.5, 1.2) < seen_transmission_spread(0.5, 1.5));
     }
 
-    /// The variance of each level, worked out kernel by kernel.
+    /// Verifies the variance of each level, computed kernel by kernel.
     #[test]
     fn levels_of_the_pyramid_have_the_blur_they_are_read_for() {
         let (mut variance, mut texel) = (0.0, 1.0_f64);
         for level in 0..10 {
             let read = variance + texel * texel / 6.0;
             let lod = pyramid_lod(read.sqrt());
-            // Level 0 is no blur but the filter; from there on the sum is 5/12·4ⁿ − 1/4.
+            // Level 0 has only the bilinear filter; later levels sum to 5/12·4ⁿ − 1/4.
             let expected = if level == 0 { 0.0 } else { f64::from(level) };
             assert!((lod - expected).abs() < if level < 2 { 0.2 } else { 0.03 }, "{level}: {lod}");
             variance += 0.75 * texel * texel;

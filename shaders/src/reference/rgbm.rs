@@ -2,24 +2,24 @@
 
 use glam::{DVec3, DVec4};
 
-/// Largest number that RGBM holds.
+/// Largest value that RGBM can represent.
 pub const RGBM_MAX: f64 = 256.0;
 
-/// Number in [0, 256] of RGBM codes in [0, 1].
+/// Decodes RGBM in [0, 1] to light in [0, 256].
 pub fn linear_from_rgbm(codes: DVec4) -> DVec3 {
     let root = codes.truncate() * (16.0 * codes.w);
     root * root
 }
 
-/// RGBM codes in [0, 1] of a color. The factor is rounded up to a code of 255, so that no channel exceeds one. Negative numbers
-/// and numbers above 256 are clamped. CPU only.
+/// Encodes a color as RGBM in [0, 1]. The multiplier is rounded up to an 8-bit step, so that no channel exceeds one.
+/// Values outside [0, 256] are clamped. CPU only.
 pub fn rgbm_from_linear(color: DVec3) -> DVec4 {
     let root = color.clamp(DVec3::ZERO, DVec3::splat(RGBM_MAX)).map(f64::sqrt) / 16.0;
     let factor = (root.max_element() * 255.0).ceil().clamp(1.0, 255.0) / 255.0;
     (root / factor).clamp(DVec3::ZERO, DVec3::ONE).extend(factor)
 }
 
-/// The codes as eight bits a channel. CPU only.
+/// Encodes a color as RGBM with 8 bits per channel. CPU only.
 pub fn rgbm_bytes(color: DVec3) -> [u8; 4] {
     rgbm_from_linear(color).to_array().map(|code| (code * 255.0).round() as u8)
 }
@@ -32,7 +32,8 @@ mod tests {
         linear_from_rgbm(DVec4::from_array(rgbm_bytes(color).map(|code| f64::from(code) / 255.0)))
     }
 
-    /// Half a code of 255 of the root, twice that of its square, relative to the brightest channel.
+    /// Verifies the error relative to the brightest channel: half an 8-bit step of the root, so twice that of its
+    /// square.
     #[test]
     fn eight_bits_keep_the_brightest_channel_within_half_a_percent() {
         for step in 0..4000 {
@@ -42,7 +43,7 @@ mod tests {
                 break;
             }
             let off = (kept(color) - color).abs() / brightest;
-            // The factor's own steps are coarse where it is small: it is a code of 255, too.
+            // Small multipliers have coarse 8-bit steps of their own.
             let least = (brightest.sqrt() / 16.0 * 255.0).max(1.0);
             assert!(
                 off.x < 0.0045 + 0.5 / (least * least) && off.max_element() < 0.0045 + 1.0 / least,

@@ -4,30 +4,30 @@ use glam::{DVec2, DVec3};
 
 use super::math::PI;
 
-/// Base-two radical inverse of i.
+/// Returns the base-two radical inverse of i.
 pub fn radical_inverse(i: u32) -> f64 {
     f64::from(i.reverse_bits()) / 4_294_967_296.0
 }
 
-/// Point i of `count` of the Hammersley set.
+/// Returns point i of `count` of the Hammersley set.
 pub fn hammersley(i: u32, count: u32) -> DVec2 {
     DVec2::new((f64::from(i) + 0.5) / f64::from(count), radical_inverse(i))
 }
 
-/// Direction of the upper hemisphere with y ≥ 0, uniform in solid angle.
+/// Returns a direction in the upper hemisphere with y ≥ 0, uniform in solid angle.
 pub fn sample_half_hemisphere(u: DVec2) -> DVec3 {
     let (sin, cos) = (PI * u.y).sin_cos();
     let s = (1.0 - u.x * u.x).max(0.0).sqrt();
     DVec3::new(s * cos, s * sin, u.x)
 }
 
-/// Smith masking of one direction, G1.
+/// Evaluates Smith masking of one direction, G1.
 pub fn g1_smith_ggx(nov: f64, alpha: f64) -> f64 {
     let a2 = alpha * alpha;
     2.0 * nov / (nov + (a2 + (1.0 - a2) * nov * nov).sqrt()).max(1e-10)
 }
 
-/// A half vector distributed as the normals visible from v.
+/// Samples a half vector from the distribution of normals visible from v.
 pub fn sample_visible_normal(v: DVec3, alpha: f64, u: DVec2) -> DVec3 {
     let stretched = DVec3::new(alpha * v.x, alpha * v.y, v.z).normalize();
     let planar2 = stretched.x * stretched.x + stretched.y * stretched.y;
@@ -53,7 +53,7 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(radical_inverse), [0.0, 0.5, 0.25, 0.75]);
         let count = 256;
         let points = (0..count).map(|i| hammersley(i, count));
-        // Every dyadic box of area 1/256 holds exactly one point.
+        // Every dyadic box of area 1/256 contains exactly one point.
         let mut boxes = vec![0; 256];
         for p in points {
             boxes[(p.x * 16.0) as usize * 16 + (p.y * 16.0) as usize] += 1;
@@ -78,7 +78,7 @@ mod tests {
         let count = 4096;
         let mean: f64 =
             (0..count).map(|i| sample_half_hemisphere(hammersley(i, count)).x.powi(2)).sum::<f64>() / f64::from(count);
-        // The mean of x² over the hemisphere is a third.
+        // The mean of x² over the hemisphere is one third.
         assert!((mean - 1.0 / 3.0).abs() < 1e-3, "{mean}");
     }
 

@@ -3,15 +3,15 @@
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Height over which a tap at the point itself would count fully, in radii.
+/// Height at which a tap at the point itself counts fully, in radii.
 pub const SAO_PEAK: f64 = 0.1;
 
-/// Distance of tap `index` from the middle of the spiral, as a share of its radius.
+/// Returns the distance of tap `index` from the center of the spiral, as a share of its radius.
 pub fn sao_tap_distance(index: f64, noise: f64, per_tap: f64) -> f64 {
     ((index + noise + 0.5) * per_tap).powi(2)
 }
 
-/// Obscurance by what is at `v` over a surface of unit normal n.
+/// Returns the obscurance by a point at `v` of a surface with unit normal n.
 pub fn sao_term(v: DVec3, n: DVec3, radius_m: f64, bias_m: f64, min_sin2: f64) -> f64 {
     let u = v / radius_m;
     let (uu, un) = (u.length_squared(), u.dot(n));
@@ -21,7 +21,7 @@ pub fn sao_term(v: DVec3, n: DVec3, radius_m: f64, bias_m: f64, min_sin2: f64) -
     (1.0 - uu).powi(2) * (un - bias_m / radius_m).max(0.0) / (uu + SAO_PEAK * SAO_PEAK)
 }
 
-/// Share of the hemisphere that is obscured, from the mean of the terms.
+/// Returns the obscured share of the hemisphere, from the mean of the terms.
 pub fn sao_obscurance(mean: f64, intensity: f64) -> f64 {
     (2.0 * PI * SAO_PEAK * intensity * mean).max(0.0).sqrt().min(1.0)
 }
@@ -30,9 +30,9 @@ pub fn sao_obscurance(mean: f64, intensity: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The corner of a floor and a wall, both infinite, seen by a parallel projection along the diagonal: all taps of the
-    /// spiral on a floor point so many m from the wall, against numbers of a separate computation from another
-    /// eye, which are up to 0.03 off for that.
+    /// Verifies the visibility near the corner of an infinite floor and wall, in an orthographic projection along the
+    /// diagonal. All taps of the spiral are evaluated at floor points with known distances from the wall. The expected
+    /// values come from a separate computation with another eye, and differ by up to 0.03.
     #[test]
     fn a_corner_converges_to_its_known_visibility() {
         let radius_m: f64 = 0.3;
@@ -44,7 +44,7 @@ mod tests {
                 for angle in 0..angles {
                     let (sin, cos) = (2.0 * PI * (f64::from(angle) + 0.5) / f64::from(angles)).sin_cos();
                     let across = r * cos * std::f64::consts::FRAC_1_SQRT_2;
-                    // On along the view, (1, 0, -1), until the floor z = 0 or the wall x = distance.
+                    // Moves along the view, (1, 0, -1), to the floor z = 0 or the wall x = distance.
                     let way = across.min(distance_m - across);
                     let v = DVec3::new(across + way, r * sin, across - way);
                     sum += sao_term(v, DVec3::Z, radius_m, 0.0, 0.0);
@@ -60,7 +60,7 @@ mod tests {
         assert_eq!(sao_term(DVec3::new(0.1, 0.05, 0.0), DVec3::Z, 0.3, 0.0, 0.0), 0.0);
         assert_eq!(sao_term(DVec3::new(0.1, 0.0, 0.3), DVec3::Z, 0.3, 0.0, 0.0), 0.0);
         assert_eq!([0.0, 1e3].map(|mean| sao_obscurance(mean, 1.0)), [0.0, 1.0]);
-        // A rise of 10° is less than the least angle of 20°.
+        // An elevation of 10° is below the minimum angle of 20°.
         let rise = DVec3::new(10_f64.to_radians().cos(), 0.0, 10_f64.to_radians().sin()) * 0.1;
         let least = 20_f64.to_radians().sin().powi(2);
         assert!(sao_term(rise, DVec3::Z, 0.3, 0.0, 0.0) > 0.0);

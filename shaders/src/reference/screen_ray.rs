@@ -3,7 +3,7 @@
 use super::math::saturate;
 use glam::DVec2;
 
-/// Length of a ray that stays behind the near plane.
+/// Returns the length of a ray, shortened to stay behind the near plane.
 pub fn ray_length_m(from_z: f64, way_z: f64, near_z: f64, reach_m: f64) -> f64 {
     let left = near_z - from_z;
     if left <= 0.0 {
@@ -15,7 +15,7 @@ pub fn ray_length_m(from_z: f64, way_z: f64, near_z: f64, reach_m: f64) -> f64 {
     }
 }
 
-/// Share of the way that stays within a picture of `size` texels.
+/// Returns the share of the ray that stays on a screen of `size` texels.
 pub fn share_in_picture(start: DVec2, way: DVec2, size: DVec2) -> f64 {
     let inside = |at: DVec2| at.cmpge(DVec2::ZERO).all() && at.cmple(size).all();
     if !inside(start) {
@@ -28,27 +28,27 @@ pub fn share_in_picture(start: DVec2, way: DVec2, size: DVec2) -> f64 {
     axis(start.x, way.x, size.x).min(axis(start.y, way.y, size.y)).min(1.0)
 }
 
-/// Whether a ray meets a surface that fills some way behind its own.
+/// Returns true if a ray meets a surface with this thickness.
 pub fn ray_meets(before_z: f64, here_z: f64, surface_z: f64, thickness_m: f64) -> bool {
     before_z.max(here_z) >= surface_z - thickness_m && before_z.min(here_z) <= surface_z
 }
 
-/// Share of a ray, between two, at which its depth is that of a surface.
+/// Returns the ray parameter, between two limits, at which its depth equals that of a surface.
 pub fn share_at_depth(surface: f64, start: f64, way: f64, low: f64, high: f64) -> f64 {
     if way.abs() < 1e-30 { high } else { ((surface - start) / way).clamp(low, high) }
 }
 
-/// Whether what was met is not the surface that the ray left.
+/// Returns true if the hit is not on the surface that the ray left.
 pub fn rises_from_plane(met_m: f64, ray_m: f64) -> bool {
     ray_m > 0.0 && met_m > 0.5 * ray_m
 }
 
-/// How much what was met counts after this share of the ray's reach.
+/// Returns the fade factor of a hit, by the share of the ray's reach.
 pub fn reach_fade(share: f64) -> f64 {
     saturate(12.0 * (1.0 - share))
 }
 
-/// How much of a reflection is traced at this perceptual roughness.
+/// Returns the weight of traced reflections at a perceptual roughness.
 pub fn roughness_fade(roughness: f64, most: f64) -> f64 {
     saturate(4.0 * (1.0 - roughness / most.max(1e-6)))
 }
@@ -57,7 +57,7 @@ pub fn roughness_fade(roughness: f64, most: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Toward the eye a ray ends at the near plane; away from it, or along it, it has its reach.
+    /// Verifies that rays toward the eye end at the near plane and all others have their full reach.
     #[test]
     fn rays_end_before_the_near_plane() {
         assert_eq!(ray_length_m(-1.0, 1.0, -0.1, 3.0), 0.9);
@@ -73,13 +73,14 @@ mod tests {
             [share(64.0, 0.0), share(0.0, 48.0), share(0.0, -16.0), share(-64.0, -64.0)],
             [0.5, 0.5, 0.5, 0.125]
         );
-        // A ray along the view, which is a point in the picture, and one that stays within it.
+        // A ray along the view direction, which is a point on the screen, and one that stays on the screen.
         assert_eq!([share(0.0, 0.0), share(3.0, 3.0)], [1.0; 2]);
         assert_eq!(share_in_picture(DVec2::new(-0.5, 8.0), DVec2::X, size), 0.0);
         assert_eq!(share_in_picture(DVec2::ZERO, DVec2::NEG_X, size), 0.0, "it starts on the border, and leaves");
     }
 
-    /// Between −2 m and −3 m: a front there, one that ends there, one behind, one far before.
+    /// Verifies hits between −2 m and −3 m: a front in between, one that ends in between, one behind, and one far in
+    /// front.
     #[test]
     fn rays_meet_what_is_between_their_ends() {
         let meets = |surface_z: f64| ray_meets(-2.0, -3.0, surface_z, 0.1);

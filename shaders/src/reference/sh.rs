@@ -1,4 +1,4 @@
-//! Mirror of `wgsl/lib/sh.wgsl`, and the projection that makes its coefficients.
+//! Mirror of `wgsl/lib/sh.wgsl`, and the projection that computes its coefficients.
 
 use glam::{DVec2, DVec3};
 
@@ -7,31 +7,31 @@ use super::math::PI;
 /// Nine pre-convolved coefficients, linear Rec.709.
 pub type Sh = [DVec3; 9];
 
-/// The basis polynomials 1, y, z, x, xy, yz, 3z² - 1, zx, x² - y² at a unit vector.
+/// Evaluates the basis polynomials 1, y, z, x, xy, yz, 3z² - 1, zx, x² - y² at a unit vector.
 fn polynomials(n: DVec3) -> [f64; 9] {
     let DVec3 { x, y, z } = n;
     [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, z * x, x * x - y * y]
 }
 
-/// Sum of coefficients times polynomials at n, with bands one and two scaled.
+/// Sums coefficients times polynomials at n, with bands one and two scaled.
 pub fn evaluate_sh(sh: &Sh, n: DVec3, band1: f64, band2: f64) -> DVec3 {
     let scale = [1.0, band1, band1, band1, band2, band2, band2, band2, band2];
     let terms = sh.iter().zip(polynomials(n)).zip(scale);
     terms.map(|((c, p), s)| *c * (p * s)).sum()
 }
 
-/// Irradiance / π, not below zero.
+/// Returns irradiance / π, at least zero.
 pub fn irradiance_sh(sh: &Sh, n: DVec3) -> DVec3 {
     evaluate_sh(sh, n, 1.0, 1.0).max(DVec3::ZERO)
 }
 
-/// Irradiance / π from two bands, not below zero.
+/// Returns irradiance / π from two bands, at least zero.
 pub fn irradiance_sh2(sh: &[DVec3; 4], n: DVec3) -> DVec3 {
     let terms = sh.iter().zip(polynomials(n)).map(|(c, p)| *c * p);
     terms.sum::<DVec3>().max(DVec3::ZERO)
 }
 
-/// Irradiance / π from five bands without the fourth, not below zero.
+/// Returns irradiance / π from five bands without the fourth, at least zero.
 pub fn irradiance_sh5(sh: &[DVec3; 18], n: DVec3) -> DVec3 {
     let DVec3 { x, y, z } = n;
     let (x2, y2, z2) = (x * x, y * y, z * z);
@@ -50,24 +50,23 @@ pub fn irradiance_sh5(sh: &[DVec3; 18], n: DVec3) -> DVec3 {
     terms.sum::<DVec3>().max(DVec3::ZERO)
 }
 
-/// Band factors from the cosine lobe to the split-sum GGX lobe: the same cubics as the
-/// shader's, since they are its definition.
+/// Returns band factors from the cosine lobe to the split-sum GGX lobe. The cubics equal the shader's, which define
+/// them.
 pub fn sh_lobe_scale(alpha: f64) -> DVec2 {
     let band1 = 0.527_27 + alpha * (-0.550_19 + alpha * 0.169_95);
     let band2 = 3.164_48 + alpha * (-4.350_02 + alpha * 2.027_39);
     DVec2::ONE + (1.0 - alpha) * DVec2::new(band1, band2)
 }
 
-/// Radiance filtered by the GGX lobe about r.
+/// Returns radiance filtered by the GGX lobe around r.
 pub fn specular_sh(sh: &Sh, r: DVec3, alpha: f64) -> DVec3 {
     let scale = sh_lobe_scale(alpha);
     evaluate_sh(sh, r, scale.x, scale.y).max(DVec3::ZERO)
 }
 
-/// Coefficients of an environment given as (unit direction, radiance, solid angle in sr)
-/// samples that cover the sphere: projection, convolution with the cosine lobe (π, 2π/3,
-/// π/4), division by π, and the squared factors of the polynomials, all folded together.
-/// Negative and non-finite radiance must have been dealt with. CPU only.
+/// Projects an environment onto irradiance coefficients. Samples are (unit direction, radiance, solid angle in sr) and
+/// cover the sphere. The coefficients include the convolution with the cosine lobe (π, 2π/3, π/4), the division by π,
+/// and the squared factors of the polynomials. Radiance must be finite and not negative. CPU only.
 pub fn project_irradiance_sh(samples: impl IntoIterator<Item = (DVec3, DVec3, f64)>) -> Sh {
     let mut sh = [DVec3::ZERO; 9];
     for (direction, radiance, solid_angle_sr) in samples {
@@ -133,7 +132,7 @@ mod tests {
             c[i] = DVec3::ONE;
             c
         };
-        // Shifted by a constant, so that the clamp at zero does nothing.
+        // Shifted by a constant to stay above the clamp at zero.
         let value = |i: usize, n: DVec3| {
             let mut c = unit(i);
             c[0] += DVec3::splat(100.0);
@@ -159,7 +158,7 @@ mod tests {
                 .sum::<f64>()
                 / PI;
             let ours = irradiance_sh(&sh, n).x;
-            // Band-limited to two bands, so exact up to the quadrature of 128×64 cells.
+            // Limited to two bands, so exact except for the quadrature with 128×64 cells.
             assert!((ours - truth).abs() < 2e-3, "{n}: {ours} against {truth}");
         }
     }
@@ -179,7 +178,7 @@ mod tests {
 
     #[test]
     fn the_lobe_scale_follows_the_ggx_lobe() {
-        // Band weights of D(θ/2)·cos θ by quadrature, over those of the cosine.
+        // Band weights of D(θ/2)·cos θ by quadrature, divided by those of the cosine.
         let bands = |alpha: f64| {
             let n = 4000;
             let mut sum = [0.0; 3];

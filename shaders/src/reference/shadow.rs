@@ -4,12 +4,12 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::math::saturate;
 
-/// Offset in m along the normal.
+/// Returns the offset along the normal, in m.
 pub fn normal_offset(normal: DVec3, right: DVec3, up: DVec3, scale: DVec2) -> DVec3 {
     normal * DVec2::new(normal.dot(right), normal.dot(up)).abs().dot(scale)
 }
 
-/// (u, v, depth) inside the map.
+/// Returns (u, v, depth) in the map.
 pub fn shadow_uvz_from_clip(clip: DVec4) -> DVec3 {
     let ndc = clip.truncate() / clip.w;
     DVec3::new(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5, ndc.z)
@@ -18,9 +18,9 @@ pub fn shadow_uvz_from_clip(clip: DVec4) -> DVec3 {
 /// Four bilinear taps that together form a 3×3 tent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TentTaps {
-    /// (left, right) u of the taps.
+    /// Left and right u of the taps.
     pub u: DVec2,
-    /// (top, bottom) v of the taps.
+    /// Top and bottom v of the taps.
     pub v: DVec2,
     /// Weights of the columns.
     pub column_weight: DVec2,
@@ -28,7 +28,7 @@ pub struct TentTaps {
     pub row_weight: DVec2,
 }
 
-/// Taps of the 3×3 tent centred on `uv` of a map of `size` texels.
+/// Returns the taps of a 3×3 tent centered on `uv`, in a map of `size` texels.
 pub fn tent_3x3(uv: DVec2, size: DVec2) -> TentTaps {
     let texel = uv * size + 0.5;
     let base = texel.floor() - 0.5;
@@ -45,7 +45,7 @@ pub fn tent_3x3(uv: DVec2, size: DVec2) -> TentTaps {
     }
 }
 
-/// Depth per texture coordinate along a receiver's plane; 0 where it is seen edge-on.
+/// Returns depth per texture coordinate along a receiver's plane; 0 for edge-on receivers.
 pub fn receiver_plane_slope(a: DVec3, b: DVec3) -> DVec2 {
     let det = a.x * b.y - a.y * b.x;
     if det.abs() <= 1e-3 * a.truncate().length() * b.truncate().length() {
@@ -54,45 +54,45 @@ pub fn receiver_plane_slope(a: DVec3, b: DVec3) -> DVec2 {
     DVec2::new(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / det
 }
 
-/// A tap of a sunflower over the unit disc.
+/// Returns a tap of a Vogel disc with unit radius.
 pub fn vogel_tap(index: u32, count: u32, turn: f64) -> DVec2 {
     let radius = ((f64::from(index) + 0.5) / f64::from(count)).sqrt();
     DVec2::from_angle(f64::from(index) * 2.399_963_2 + turn) * radius
 }
 
-/// The share of taps in shadow, hardened.
+/// Returns the share of taps in shadow, with increased contrast.
 pub fn hardened_kernel(share: f64) -> f64 {
     let x = 2.0 * share - 1.0;
     let s = if x == 0.0 { 0.0 } else { x.signum() };
     0.5 * (s - s * (1.0 - s * x).powi(3)) + 0.5
 }
 
-/// Width of a penumbra over the bulb's, of linear reversed depths.
+/// Returns the width of a penumbra divided by that of the light source, for linear reversed depths.
 pub fn penumbra_ratio_parallel(receiver: f64, blocker: f64) -> f64 {
     (blocker - receiver).max(0.0) / (1.0 - blocker).max(1e-4)
 }
 
-/// The same of perspective reversed depths.
+/// Returns the width of a penumbra divided by that of the light source, for perspective reversed depths.
 pub fn penumbra_ratio_perspective(receiver: f64, blocker: f64, near_over_range: f64) -> f64 {
     ((near_over_range + blocker) / (near_over_range + receiver).max(1e-7) - 1.0).max(0.0)
 }
 
-/// Number of the cascade for what is so far ahead.
+/// Returns the cascade at a distance ahead of the eye.
 pub fn cascade_at(ahead_m: f64, far_ends: [f64; 4]) -> u32 {
     far_ends.iter().filter(|end| **end < ahead_m).count() as u32
 }
 
-/// Visibility faded to one at the far end.
+/// Returns visibility, faded to one at the far end.
 pub fn faded_visibility(visibility: f64, ahead_m: f64, inv_far2: f64) -> f64 {
     1.0 - (1.0 - visibility) * saturate(5.0 - 5.0 * ahead_m * ahead_m * inv_far2)
 }
 
-/// Visibility of a light whose shadows have that strength.
+/// Returns the visibility of a light with this shadow strength.
 pub fn weakened_visibility(visibility: f64, strength: f64) -> f64 {
     visibility * strength + (1.0 - strength)
 }
 
-/// Number of the face that a direction goes through.
+/// Returns the cube face that a direction points to.
 pub fn cube_face_of(direction: DVec3) -> u32 {
     let a = direction.abs();
     if a.x >= a.y && a.x >= a.z {
@@ -108,7 +108,7 @@ pub fn cube_face_of(direction: DVec3) -> u32 {
 mod tests {
     use super::*;
 
-    /// Filter weight that the taps give each texel centre along one axis.
+    /// Returns the filter weight of each texel center along one axis.
     fn texel_weights(u: f64, size: i32) -> Vec<f64> {
         let taps = tent_3x3(DVec2::splat(u), DVec2::splat(f64::from(size)));
         let mut weights = vec![0.0; size as usize];
@@ -123,8 +123,8 @@ mod tests {
 
     #[test]
     fn the_taps_are_a_box_two_wide_smeared_by_a_texel() {
-        // Four texels with weights (1 - s, 2 - ... ) / 4: each is the overlap of its cell with
-        // a box of width two about the centre, convolved with the texel.
+        // Each of the four texel weights is the overlap of its cell with a box of width two around the center,
+        // convolved with the texel.
         let size = 16;
         for step in 0..40 {
             let u = 0.4 + f64::from(step) / 400.0;
@@ -146,14 +146,14 @@ mod tests {
             let u = 0.35 + 0.3 * f64::from(i) / 1000.0;
             let now = lit(u);
             assert!(now <= last + 1e-12, "monotone across an edge");
-            // The edge fades over about three texels, so by at most 0.5 a texel.
+            // The edge fades over about three texels, so it changes by at most 0.5 per texel.
             assert!((now - last).abs() < 0.51 * 16.0 * 0.3 / 1000.0, "{u}");
             last = now;
         }
         assert!(lit(0.35) == 1.0 && last == 0.0);
     }
 
-    /// The offset carries the receiver's plane over whatever a kernel of that reach finds on it, and no farther than the
+    /// Verifies that the offset moves the receiver's plane past every depth in the kernel, but no farther than the
     /// kernel's corner (hard case 42).
     #[test]
     fn hard_case_42_bias_covers_the_kernel_and_no_more() {
@@ -167,7 +167,7 @@ mod tests {
                 let normal = across * tilt.sin() + toward * tilt.cos();
                 let offset = normal_offset(normal, right, up, DVec2::ONE);
                 assert!(offset.length() <= reach * texel.length() + 1e-12, "{degrees}: {offset}");
-                // Any point of the plane within the reach lies behind the moved receiver, seen along the light.
+                // Any point of the plane within the kernel lies behind the moved receiver, seen along the light.
                 for corner in [DVec2::new(1.0, 1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), -DVec2::ONE] {
                     let at = (corner * texel * reach).extend(0.0);
                     let height = normal.dot(offset) - normal.dot(at);
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!((edge_on, receiver_plane_slope(DVec3::ZERO, DVec3::ZERO)), (DVec2::ZERO, DVec2::ZERO));
     }
 
-    /// Hard case 43: blockers at the near end, at the receiver and none give finite penumbrae.
+    /// Hard case 43: penumbrae are finite for blockers at the near end, at the receiver, and without blockers.
     #[test]
     fn hard_case_43_penumbrae_stay_finite() {
         for (receiver, blocker) in [(0.2, 1.0), (1.0, 1.0), (0.3, 0.3), (0.5, 0.4), (0.0, 0.0)] {
@@ -199,7 +199,7 @@ mod tests {
             ];
             assert!(ratios.iter().all(|r| r.is_finite() && *r >= 0.0), "{receiver} {blocker}: {ratios:?}");
         }
-        // Half-way between the near end and the receiver the penumbra is as wide as the bulb.
+        // Half-way between the near end and the receiver, the penumbra is as wide as the light source.
         assert!((penumbra_ratio_parallel(0.2, 0.6) - 1.0).abs() < 1e-12);
     }
 

@@ -4,25 +4,25 @@ use glam::DVec2;
 
 use super::math::saturate;
 
-/// exp(c · (2 depth - 1)).
+/// Returns exp(c · (2 depth - 1)).
 pub fn warp_depth(depth: f64, exponent: f64) -> f64 {
     (exponent * (2.0 * saturate(depth) - 1.0)).exp()
 }
 
-/// Warped depth and its square with the spread within a texel.
+/// Returns warped depth and its square, including the spread within a texel.
 pub fn depth_moments(depth: f64, dx: f64, dy: f64, exponent: f64) -> DVec2 {
     let warped = warp_depth(depth, exponent);
     let slope = DVec2::new(dx, dy) * (2.0 * exponent * warped);
     DVec2::new(warped, (warped * warped + 0.25 * slope.dot(slope)).min((2.0 * exponent).exp()))
 }
 
-/// Least variance of a receiver's warped depth.
+/// Returns the minimum variance of a receiver's warped depth.
 pub fn least_variance(warped: f64, exponent: f64, floor_share: f64, texel_slope: DVec2) -> f64 {
     let slope = 2.0 * exponent * warped;
     warped * warped * floor_share + 0.25 * slope * slope * texel_slope.dot(texel_slope).min(0.01)
 }
 
-/// Share of the light that reaches a receiver at most.
+/// Returns the upper bound of the light that reaches a receiver.
 pub fn moment_visibility(moments: DVec2, warped: f64, least: f64, bleed: f64) -> f64 {
     if warped <= moments.x {
         return 1.0;
@@ -37,7 +37,7 @@ mod tests {
     use super::*;
     use half::f16;
 
-    /// Hard case 44: the exponents are the largest whose moments their formats hold.
+    /// Hard case 44: the exponents are the largest whose moments fit the formats.
     #[test]
     fn hard_case_44_moments_are_finite_in_their_formats() {
         for depth in [0.0, 0.5, 0.9, 1.0, 2.0] {
@@ -52,7 +52,7 @@ mod tests {
         assert!((warp_depth(1.0, 44.5).powi(2) as f32).is_infinite());
     }
 
-    /// Hard case 45: a lit plane whose moments are rounded to half floats is lit.
+    /// Hard case 45: a lit plane stays lit when its moments are rounded to half floats.
     #[test]
     fn hard_case_45_a_lit_plane_is_lit_in_half_floats() {
         let floor = (0.5_f64 * 0.01 * 5.54).powi(2);
@@ -67,7 +67,8 @@ mod tests {
         }
     }
 
-    /// Two occluders over a receiver, gap ratio .75 (`accuracy.md`, 1.6): the light that leaks with c = 5.54 and 42.
+    /// Verifies light leaks from two occluders above a receiver with gap ratio .75 (`accuracy.md`, 1.6), for c = 5.54
+    /// and 42.
     #[test]
     fn the_warp_hides_leaks() {
         let leak = |exponent: f64| {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// A texel sharpened by the neighbors around it.
+/// Sharpens a texel by its four neighbors.
 pub fn sharpened(middle: DVec3, neighbors: [DVec3; 4], strength: f64) -> DVec3 {
     let least = neighbors.into_iter().fold(DVec3::INFINITY, DVec3::min);
     let most = neighbors.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max);

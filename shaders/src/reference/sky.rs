@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::math::{PI, mix, saturate, smoothstep};
 
-/// Perez' sky function for three quantities at once.
+/// Evaluates the Perez sky function for three quantities.
 pub fn perez(coefficients: &[DVec3; 5], cos_theta: f64, cos_gamma: f64) -> DVec3 {
     let c = cos_gamma.clamp(-1.0, 1.0);
     let [a, b, d, e, f] = *coefficients;
@@ -13,7 +13,7 @@ pub fn perez(coefficients: &[DVec3; 5], cos_theta: f64, cos_gamma: f64) -> DVec3
     toward_zenith * toward_sun
 }
 
-/// Linear Rec.709 color from CIE xyY.
+/// Converts CIE xyY to linear Rec.709.
 pub fn linear_from_xyy(xyy: DVec3) -> DVec3 {
     let scale = xyy.z / xyy.y.max(1e-3);
     let xyz = DVec3::new(xyy.x * scale, xyy.z, (1.0 - xyy.x - xyy.y) * scale);
@@ -25,14 +25,14 @@ pub fn linear_from_xyy(xyy: DVec3) -> DVec3 {
     .max(DVec3::ZERO)
 }
 
-/// Radiance of the sky without the sun in the unit direction d.
+/// Returns the radiance of the sky without the sun in the unit direction d.
 pub fn sky_radiance(coefficients: &[DVec3; 5], zenith: DVec3, ground: DVec3, to_sun: DVec3, d: DVec3) -> DVec3 {
     let sky = linear_from_xyy(zenith * perez(coefficients, d.y, d.dot(to_sun)));
     let t = smoothstep(-0.01, 0.01, d.y);
     DVec3::new(mix(ground.x, sky.x, t), mix(ground.y, sky.y, t), mix(ground.z, sky.z, t))
 }
 
-/// How much of the sun disc covers the unit direction d.
+/// Returns the coverage of the unit direction d by the sun disc.
 pub fn sun_disc(d: DVec3, to_sun: DVec3, sin_radius: f64) -> f64 {
     if d.dot(to_sun) <= 0.0 {
         return 0.0;
@@ -40,39 +40,38 @@ pub fn sun_disc(d: DVec3, to_sun: DVec3, sin_radius: f64) -> f64 {
     1.0 - smoothstep(0.9 * sin_radius, sin_radius, d.cross(to_sun).length())
 }
 
-/// Share of the sun's brightness that its disc with a halo shows in the unit direction d.
+/// Returns the relative brightness of the sun disc and its halo in the unit direction d.
 pub fn sun_halo(d: DVec3, to_sun: DVec3, versine: f64, per_halo: f64, falloff: f64) -> f64 {
     let left = 1.0 - saturate((0.5 * (d - to_sun).length_squared() - versine) * per_halo);
     if left > 0.0 { left.max(1e-6).powf(falloff) } else { 0.0 }
 }
 
-/// Radiance of a disc that lights a surface facing it with `illuminance`.
+/// Returns the radiance of a disc that lights a surface facing it with `illuminance`.
 pub fn sun_disc_radiance(illuminance: DVec3, sin_radius: f64) -> DVec3 {
     illuminance / (PI * (sin_radius * sin_radius).max(1e-12))
 }
 
-/// A clear sky after Preetham, Shirley and Smits (1999): what the shader's coefficients come
-/// from, and the same sky for the CPU, which bakes it into a panorama. CPU only.
+/// Clear sky after Preetham, Shirley and Smits (1999). It provides the shader's coefficients, and evaluates the sky on
+/// the CPU to bake a panorama. CPU only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preetham {
-    /// Perez' A…E for (x, y, Y).
+    /// Perez coefficients A…E for (x, y, Y).
     pub perez: [DVec3; 5],
-    /// (x, y, Y) at the zenith over Perez' function there; Y in nits.
+    /// (x, y, Y) at the zenith divided by the Perez function there; Y in nits.
     pub zenith: DVec3,
     /// Radiance below the horizon in nits, linear Rec.709.
     pub ground: DVec3,
-    /// Unit vector toward the sun, held above the horizon.
+    /// Unit vector toward the sun, clamped above the horizon.
     pub to_sun: DVec3,
 }
 
-/// Lowest sun the model is asked about, as the sine of its elevation (2°): the fit has no
-/// night, and its zenith luminance turns negative soon after.
+/// Minimum sine of the sun's elevation (2°). The model does not cover night, and its zenith luminance turns negative
+/// below this.
 const MIN_SUN_SIN: f64 = 0.0349;
 
 impl Preetham {
-    /// The sky for a sun in direction `to_sun` (held 2° above the horizon), through air of
-    /// `turbidity` 1.7 (mountain) … 10 (haze; 2.5 is clear), over ground of `albedo` lit by
-    /// that sky and by a sun of `sun_illuminance` in lux.
+    /// Computes the sky for a sun in direction `to_sun`, clamped to 2° above the horizon. `turbidity` is 1.7 (mountain)
+    /// … 10 (haze); 2.5 is clear. The ground has `albedo` and is lit by the sky and a sun of `sun_illuminance` in lux.
     pub fn new(to_sun: DVec3, turbidity: f64, albedo: DVec3, sun_illuminance: DVec3) -> Self {
         let t = turbidity.clamp(1.7, 10.0);
         let to_sun = above_horizon(to_sun);
@@ -103,16 +102,16 @@ impl Preetham {
         Self { ground: albedo * lit_by / PI, ..sky }
     }
 
-    /// Radiance in nits in the unit direction d, without the sun's disc.
+    /// Returns the radiance in nits in the unit direction d, without the sun's disc.
     pub fn radiance(&self, d: DVec3) -> DVec3 {
         sky_radiance(&self.perez, self.zenith, self.ground, self.to_sun, d)
     }
 
-    /// Illuminance of the sky on level ground in lux, by 64 × 32 points of the hemisphere.
+    /// Returns the sky's illuminance of level ground in lux, from 64 × 32 points of the hemisphere.
     pub fn horizontal_illuminance(&self) -> DVec3 {
         let (columns, rows) = (64, 32);
         let point = |i: u32| {
-            // Equal steps of cos² make every point count alike: E = π · mean radiance.
+            // Equal steps of cos² give all points equal weight: E = π · mean radiance.
             let cos = ((f64::from(i / columns) + 0.5) / f64::from(rows)).sqrt();
             let azimuth = (f64::from(i % columns) + 0.5) / f64::from(columns) * 2.0 * PI;
             let sin = (1.0 - cos * cos).sqrt();
@@ -132,7 +131,7 @@ fn above_horizon(to_sun: DVec3) -> DVec3 {
     flat * (1.0 - MIN_SUN_SIN * MIN_SUN_SIN).sqrt() + DVec3::Y * MIN_SUN_SIN
 }
 
-/// Rows: turbidity², turbidity, 1; columns: θ³, θ², θ, 1 (appendix A.2 of the paper).
+/// Coefficients with rows turbidity², turbidity, 1 and columns θ³, θ², θ, 1 (appendix A.2 of the paper).
 type ZenithMatrix = [[f64; 4]; 3];
 
 const X_ZENITH: ZenithMatrix =

@@ -4,24 +4,24 @@ use glam::DVec3;
 
 use super::math::saturate;
 
-/// Linear light from one encoded channel.
+/// Decodes one sRGB channel to linear light.
 pub fn linear_from_srgb_channel(encoded: f64) -> f64 {
     let e = saturate(encoded);
     if e <= 0.04045 { e / 12.92 } else { ((e + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Encoded channel from linear light.
+/// Encodes one channel of linear light.
 pub fn srgb_from_linear_channel(linear: f64) -> f64 {
     let l = saturate(linear);
     if l <= 0.003_130_8 { l * 12.92 } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Linear Rec.709 color from an sRGB encoded one.
+/// Decodes an sRGB color to linear Rec.709.
 pub fn linear_from_srgb(encoded: DVec3) -> DVec3 {
     DVec3::from_array(encoded.to_array().map(linear_from_srgb_channel))
 }
 
-/// sRGB encoded color from a linear Rec.709 one.
+/// Encodes a linear Rec.709 color as sRGB.
 pub fn srgb_from_linear(linear: DVec3) -> DVec3 {
     DVec3::from_array(linear.to_array().map(srgb_from_linear_channel))
 }

@@ -6,7 +6,7 @@ use super::diffuse::fd_lambert;
 use super::fresnel::f_schlick;
 use super::ggx::{d_ggx, v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
 
-/// What the reflection of a light depends on, apart from the light.
+/// Surface parameters of the BRDF that do not depend on the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandardSurface {
     /// Unit shading normal.
@@ -23,22 +23,22 @@ pub struct StandardSurface {
     pub f0: DVec3,
     /// Reflectance at grazing incidence.
     pub f90: f64,
-    /// Factor for light scattered more than once.
+    /// Factor that compensates for multiple scattering.
     pub compensation: DVec3,
 }
 
-/// normal · view, held above 1e-4.
+/// Clamps normal · view to at least 1e-4.
 pub fn clamp_nov(nov: f64) -> f64 {
     nov.max(1e-4)
 }
 
-/// The unit vector half-way between two; shorter between opposite ones.
+/// Returns the unit vector half-way between two unit vectors; shorter for opposite vectors.
 pub fn half_vector(a: DVec3, b: DVec3) -> DVec3 {
     let sum = a + b;
     sum / sum.length_squared().max(1e-12).sqrt()
 }
 
-/// BRDF times cosine toward the unit vector `to_light`.
+/// Evaluates BRDF times cosine toward the unit vector `to_light`.
 pub fn reflect_light(s: &StandardSurface, to_light: DVec3, fast_visibility: bool) -> DVec3 {
     let nol = s.normal.dot(to_light).min(1.0);
     if nol <= 0.0 {
@@ -70,7 +70,7 @@ mod tests {
         }
     }
 
-    /// Albedo by brute force: BRDF times cosine over the whole hemisphere.
+    /// Integrates the albedo: BRDF times cosine over the whole hemisphere.
     fn albedo(s: &StandardSurface, fast: bool) -> f64 {
         let (rows, columns) = (400, 400);
         let mut sum = 0.0;
@@ -97,7 +97,7 @@ mod tests {
                     assert!((lossy - dfg.y).abs() < 4e-3, "table and shader agree: {lossy}");
                     s.compensation = energy_compensation(s.f0, dfg.y);
                     let white = albedo(&s, fast);
-                    // Quadrature of 400² directions and 2048 samples.
+                    // Quadrature with 400² directions, and 2048 samples.
                     assert!((white - 1.0).abs() < 6e-3, "{roughness} {nov} {fast}: {white}");
                 }
             }
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn without_compensation_rough_metal_loses_the_known_share() {
-        // Single scattering loses 14 % at roughness 0.5 and 56 % at 1, seen from 60°.
+        // Single scattering loses 14 % at roughness 0.5 and 56 % at 1, at a view angle of 60°.
         for (roughness, loss) in [(0.5, 0.14), (0.7, 0.30), (1.0, 0.56)] {
             let kept = albedo(&surface(0.5, roughness, 1.0), false);
             assert!((1.0 - kept - loss).abs() < 0.02, "{roughness}: {kept}");

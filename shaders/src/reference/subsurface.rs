@@ -4,29 +4,29 @@ use glam::DVec3;
 
 use super::math::{PI, mix, saturate};
 
-/// BSDF times cosine, in 1/sr, of the light that is scattered below a surface of color one.
+/// Evaluates BSDF times cosine, in 1/sr, of subsurface scattering with white color.
 pub fn subsurface_scatter(vol: f64, nol: f64, power: f64, thickness: f64) -> f64 {
     let forward = ((saturate(-vol) - 1.0) * power).exp2();
     let back = 0.5 * (saturate(nol) * thickness + (1.0 - thickness));
     mix(back, 1.0, forward) * (1.0 - thickness) / PI
 }
 
-/// Factor on the ambient light that is scattered below a surface.
+/// Returns the factor on ambient light from subsurface scattering.
 pub fn subsurface_ambient(thickness: f64) -> f64 {
     (1.0 - thickness) * 0.5 / PI
 }
 
-/// Perceptual roughness of the level of the environment that stands for light through a body.
+/// Returns the perceptual roughness of the environment level that represents light through an object.
 pub fn subsurface_roughness(alpha: f64, thickness: f64) -> f64 {
     1.0 - (1.0 - saturate(alpha + 0.25 * (1.0 + thickness))).sqrt()
 }
 
-/// Cosine wrapped half about the terminator.
+/// Returns the cosine, wrapped around the terminator by half.
 pub fn wrapped_cosine(nol: f64) -> f64 {
     saturate((nol + 0.5) / 2.25)
 }
 
-/// Tint of light that cloth scatters.
+/// Returns the tint of light scattered by cloth.
 pub fn cloth_tint(color: DVec3, cosine: f64) -> DVec3 {
     (color + saturate(cosine)).clamp(DVec3::ZERO, DVec3::ONE)
 }
@@ -35,7 +35,7 @@ pub fn cloth_tint(color: DVec3, cosine: f64) -> DVec3 {
 mod tests {
     use super::*;
 
-    /// The wrapped cosine sums up to π over the sphere, as the cosine does over the hemisphere.
+    /// Verifies that the wrapped cosine integrates to π over the sphere, as the cosine does over the hemisphere.
     #[test]
     fn wrapping_adds_no_light() {
         let n = 10_000;
@@ -47,7 +47,7 @@ mod tests {
         assert!((sum - PI).abs() < 1e-4, "{sum}");
     }
 
-    /// Lights behind shine through by the lobe alone, and nothing through a thickness of one.
+    /// Verifies that lights behind shine through in the lobe only, and that a thickness of one blocks all light.
     #[test]
     fn light_comes_through_thin_bodies() {
         assert!((subsurface_scatter(-1.0, -1.0, 12.0, 0.25) - 0.75 / PI).abs() < 1e-12);

@@ -2,44 +2,44 @@
 
 use glam::DVec3;
 
-/// Luma and the two chromas of a color.
+/// Converts RGB to YCoCg.
 pub fn ycocg_from_rgb(c: DVec3) -> DVec3 {
     DVec3::new(0.25 * c.x + 0.5 * c.y + 0.25 * c.z, 0.5 * (c.x - c.z), 0.5 * c.y - 0.25 * (c.x + c.z))
 }
 
-/// The color of luma and chromas.
+/// Converts YCoCg to RGB.
 pub fn rgb_from_ycocg(c: DVec3) -> DVec3 {
     DVec3::new(c.x + c.y - c.z, c.x + c.z, c.x - c.y - c.z)
 }
 
-/// A color whose brightest channel is less than 1.
+/// Compresses a color so that its brightest channel is less than 1.
 pub fn compress_range(c: DVec3) -> DVec3 {
     c / (1.0 + c.max_element())
 }
 
-/// Undoes [`compress_range`], at most 65504 times.
+/// Inverts [`compress_range`]; the result is limited to 65504.
 pub fn expand_range(c: DVec3) -> DVec3 {
     c / (1.0 - c.max_element()).max(1.0 / 65504.0)
 }
 
-/// Deviation of five samples of this sum and sum of squares.
+/// Returns the standard deviation of five samples, from their sum and sum of squares.
 pub fn deviation_of_five(sum: DVec3, squares: DVec3) -> DVec3 {
     let mean = sum / 5.0;
     (squares / 5.0 - mean * mean).max(DVec3::ZERO).map(f64::sqrt)
 }
 
-/// How far from `start` toward `end` a box begins, 0 to 1.
+/// Returns the share of the way from `start` to `end` at which a box begins, 0…1.
 pub fn share_to_box(start: DVec3, end: DVec3, low: DVec3, high: DVec3) -> f64 {
     let way = (end - start).map(|d| if d.abs() < 1e-5 { 1e-5 } else { d });
     ((high - start) / way).min((low - start) / way).max_element().clamp(0.0, 1.0)
 }
 
-/// Factor on the share of this frame that keeps flickering out of the sum.
+/// Returns a factor on the weight of this frame that reduces flicker.
 pub fn steadiness(luma: f64, earlier_luma: f64) -> f64 {
     (1.0 - (luma - earlier_luma).abs() / (0.001 + luma.max(earlier_luma))).powi(2)
 }
 
-/// Weights of four texels in a row.
+/// Returns the weights of four texels in a row.
 pub fn catmull_rom(f: f64) -> [f64; 4] {
     let half = |x: f64| 0.5 * x;
     [
@@ -58,13 +58,14 @@ mod tests {
     fn spaces_are_undone() {
         for c in [DVec3::ZERO, DVec3::new(0.2, 0.7, 1.5), DVec3::new(65504.0, 0.0, 3.0)] {
             assert!((rgb_from_ycocg(ycocg_from_rgb(c)) - c).length() <= 1e-12 * c.length());
-            // What the brightest leaves of 1 is 1/65505, of which 65504 is the most that is undone.
+            // The brightest color leaves 1/65505 of 1; the inverse limits the factor to 65504.
             assert!((expand_range(compress_range(c)) - c).length() <= 2e-5 * c.length());
         }
         assert_eq!(ycocg_from_rgb(DVec3::splat(0.5)), DVec3::new(0.5, 0.0, 0.0), "grey has no chroma");
     }
 
-    /// An even neighborhood is a box without width: what lies elsewhere goes all the way, what is there stays (hard case 51).
+    /// Verifies constant neighborhoods, whose box has zero size: other colors are clipped completely, equal colors stay
+    /// (hard case 51).
     #[test]
     fn even_neighborhoods_are_boxes_without_width() {
         let flat = DVec3::splat(0.25);

@@ -1,9 +1,9 @@
-//! Mirror of `wgsl/lib/thin_film.wgsl`, with the constants as KHR_materials_iridescence prints them.
+//! Mirror of `wgsl/lib/thin_film.wgsl`, with the constants as published in KHR_materials_iridescence.
 
 use super::math::{PI, pow5, saturate};
 use glam::{DMat3, DVec3};
 
-/// Linear Rec.709 of a wave in the spectrum: its path in nm, its phase in full turns.
+/// Returns the linear Rec.709 response to a spectral wave, from its path in nm and its phase in full turns.
 pub fn film_sensitivity(path_nm: f64, turns: DVec3) -> DVec3 {
     let phase = 2.0 * PI * path_nm.min(1e5) * 1e-9;
     let shift = turns * (2.0 * PI);
@@ -16,7 +16,7 @@ pub fn film_sensitivity(path_nm: f64, turns: DVec3) -> DVec3 {
         wave(4.4201e-13, 1.7953e6, 9.3046e9, shift.y),
         wave(5.2481e-13, 2.2084e6, 6.6121e9, shift.z),
     );
-    // The matrix of the sample code, by columns.
+    // Matrix of the sample code, by columns.
     DMat3::from_cols(
         DVec3::new(3.240_454_2, -0.969_266_0, 0.055_643_4),
         DVec3::new(-1.537_138_5, 1.876_010_8, -0.204_025_9),
@@ -24,7 +24,7 @@ pub fn film_sensitivity(path_nm: f64, turns: DVec3) -> DVec3 {
     ) * xyz
 }
 
-/// Reflectance of a film on a base.
+/// Returns the reflectance of a film on a base.
 pub fn thin_film_reflectance(cosine: f64, ior: f64, thickness_nm: f64, base_f0: DVec3) -> DVec3 {
     let index = ior.max(1.0);
     let outside = saturate(cosine);
@@ -53,7 +53,7 @@ pub fn thin_film_reflectance(cosine: f64, ior: f64, thickness_nm: f64, base_f0: 
     reflectance.clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// Schlick's approximation solved for the reflectance at normal incidence.
+/// Solves Schlick's approximation for the reflectance at normal incidence.
 pub fn f0_from_reflectance(reflectance: DVec3, f90: f64, cosine: f64) -> DVec3 {
     let grazing = pow5(1.0 - cosine).min(f64::from(0.9999_f32));
     ((reflectance - DVec3::splat(f90 * grazing)) / (1.0 - grazing)).clamp(DVec3::ZERO, DVec3::ONE)
@@ -63,14 +63,15 @@ pub fn f0_from_reflectance(reflectance: DVec3, f90: f64, cosine: f64) -> DVec3 {
 mod tests {
     use super::*;
 
-    /// A film of the index of its base, on air's side alone: nothing returns from below, and nothing interferes.
+    /// Verifies a film with the same index as its base: nothing reflects at the lower interface, so nothing interferes.
     #[test]
     fn a_film_of_the_bases_index_is_the_base() {
         let f0 = 0.04;
         for cosine in [0.1, 0.5, 1.0] {
             let film = thin_film_reflectance(cosine, 1.5, 400.0, DVec3::splat(f0));
             let bare = f0 + (1.0 - f0) * pow5(1.0 - cosine);
-            // The bottom has Schlick's edge of its own, at an angle of 41.7° at most: 1e-3 of the light that gets there.
+            // The lower interface has Schlick's grazing increase of its own, at 41.7° at most: 1e-3 of the incoming
+            // light.
             assert!((film - DVec3::splat(bare)).abs().max_element() < 3e-2, "{cosine}: {film} for {bare}");
         }
     }

@@ -14,7 +14,7 @@ fn input(color: DVec3) -> DVec3 {
     color.clamp(DVec3::ZERO, DVec3::splat(100.0))
 }
 
-/// ACES 1.0 as fitted by Hill.
+/// Evaluates ACES 1.0 as fitted by Hill.
 pub fn tone_map_hill(color: DVec3) -> DVec3 {
     let into = DMat3::from_cols_array_2d(&[
         [0.59719, 0.35458, 0.04823],
@@ -32,19 +32,19 @@ pub fn tone_map_hill(color: DVec3) -> DVec3 {
     (out_of.transpose() * fit).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// Narkowicz' per-channel curve.
+/// Evaluates Narkowicz' per-channel curve.
 pub fn tone_map_filmic(color: DVec3) -> DVec3 {
     let c = input(color);
     ((c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14)).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// sRGB encoded display light: the transfer function is part of the curve.
+/// Returns sRGB encoded display light; the curve includes the transfer function.
 pub fn tone_map_mobile(color: DVec3) -> DVec3 {
     let c = input(color);
     (c / (c + 0.155) * 1.019).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// Khronos PBR Neutral.
+/// Evaluates Khronos PBR Neutral.
 pub fn tone_map_neutral(color: DVec3) -> DVec3 {
     let c = input(color);
     let lowest = c.min_element();
@@ -60,7 +60,7 @@ pub fn tone_map_neutral(color: DVec3) -> DVec3 {
     (scaled + (DVec3::splat(new_peak) - scaled) * white).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// Contrast, input scale and output scale.
+/// Evaluates the generic curve with contrast, input scale and output scale.
 pub fn tone_generic(color: DVec3, curve: DVec3) -> DVec3 {
     let c = color.clamp(DVec3::ZERO, DVec3::splat(65504.0)).to_array();
     DVec3::from_array(c.map(|x| {
@@ -69,12 +69,12 @@ pub fn tone_generic(color: DVec3, curve: DVec3) -> DVec3 {
     }))
 }
 
-/// Whether a curve takes Rec.2020 and gives that.
+/// Returns true if input and output of a curve are in Rec.2020.
 pub fn tone_in_rec2020(curve: u32) -> bool {
     !matches!(curve, 0..=3 | 13)
 }
 
-/// Display light of a color, both in the primaries of the curve.
+/// Returns the display light of a color, both in the primaries of the curve.
 pub fn tone_curve(color: DVec3, curve: u32, generic: DVec3) -> DVec3 {
     match curve {
         1 => tone_map_hill(color),
@@ -91,12 +91,12 @@ pub fn tone_curve(color: DVec3, curve: u32, generic: DVec3) -> DVec3 {
     }
 }
 
-/// Linear Rec.709 display light of linear Rec.709 light.
+/// Tone maps linear Rec.709 scene light to linear Rec.709 display light.
 pub fn tone_map(color: DVec3, curve: u32, generic: DVec3, by_luminance: bool, into_gamut: bool) -> DVec3 {
     tone_map_with(color, tone_in_rec2020(curve), |color| tone_curve(color, curve, generic), by_luminance, into_gamut)
 }
 
-/// The same with any curve, which takes Rec.2020 if `wide`, and otherwise Rec.709. CPU only.
+/// Tone maps with any curve, in Rec.2020 if `wide`, otherwise in Rec.709. CPU only.
 pub fn tone_map_with(
     color: DVec3,
     wide: bool,
@@ -129,25 +129,25 @@ mod tests {
 
     #[test]
     fn greys_rise_monotonically_from_black_to_white() {
-        // All but the colors of stops.
+        // All curves except false colors.
         for curve in (0..12).chain([13]) {
             let grey = |x: f64| shown(DVec3::splat(x), curve);
             let mut last = grey(0.0);
             assert!(last.max_element() <= 1e-3, "curve {curve}: black is {last}");
             for i in 0..4000 {
                 let now = grey(1e-4 * 1.004_f64.powi(i));
-                // The polynomial of AgX has a dip near black; its golden look takes blue away as red grows.
+                // The polynomial of AgX dips near black; its golden look reduces blue as red increases.
                 let rise = (now - last).dot(LUMINANCE_REC709);
                 assert!(rise > -1e-5, "curve {curve}: {last} then {now}");
                 last = now;
             }
-            // Gold is darker than white.
+            // The golden look is darker than white.
             let white = [0.98, 0.9, 0.7][usize::from(tone_in_rec2020(curve)) + usize::from(curve == 8)];
             assert!(last.dot(LUMINANCE_REC709) > white, "curve {curve}: white is {last}");
         }
     }
 
-    /// Hard case 47: no curve leaves 0…1, whatever it is given.
+    /// Hard case 47: every curve stays in 0…1 for any input.
     #[test]
     fn hard_case_47_hard_inputs_stay_in_range() {
         for (curve, luminance, gamut) in (0..14).flat_map(|c| [(c, false, false), (c, true, false), (c, false, true)]) {
@@ -167,7 +167,7 @@ mod tests {
         assert!((grey.x - 0.1056).abs() < 5e-4, "ACES renders 18 % to 10.4 %: {grey}");
         let filmic = tone_map_filmic(DVec3::splat(0.18)).x;
         assert!((filmic - 0.2669).abs() < 5e-4, "{filmic}");
-        // 0.18 / 0.335 · 1.019: three codes of 255 below the curve that it fits, encoded.
+        // 0.18 / 0.335 · 1.019: three 8-bit steps below the curve that it fits, encoded.
         let mobile = tone_map_mobile(DVec3::splat(0.18)).x;
         assert!((mobile - 0.547_522).abs() < 1e-6, "{mobile}");
         let encoded = srgb_from_linear(tone_map_filmic(DVec3::splat(0.18))).x;
@@ -175,13 +175,13 @@ mod tests {
         assert!((srgb_from_linear(shown(DVec3::splat(0.18), 13)).x - mobile).abs() < 1e-9, "encoded once, not twice");
         let base = DVec3::new(0.5, 0.3, 0.2);
         assert!(shown(base, 5).abs_diff_eq(base, 1e-9), "within the gamut nothing changes");
-        // 7 of pure red: (1, 0.48, 0.11) of Rec.2020.
+        // Pure red of 7 is (1, 0.48, 0.11) in Rec.2020.
         let red = shown(DVec3::new(7.0, 0.0, 0.0), 5);
         assert!(red.abs_diff_eq(DVec3::new(1.0, 0.4224, 0.0615), 1e-3), "{red}");
         assert_eq!(tone_map_neutral(base), base - 0.04, "only the Fresnel offset is removed");
     }
 
-    /// A luminance that the curve gives is that of the color; a hue is kept.
+    /// Verifies that tone mapping by luminance gives the curve's luminance and keeps the hue.
     #[test]
     fn by_luminance_a_bright_red_stays_red() {
         let red = DVec3::new(8.0, 0.4, 0.2);

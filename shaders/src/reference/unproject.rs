@@ -2,33 +2,33 @@
 
 use glam::{DVec2, DVec3, DVec4};
 
-/// The numbers of a projection: (x, y, z) of view space goes to clip space as
-/// x' = scale.x·x + slide.x·z + offset.x, z' = depth.x·z + depth.y, w' = depth.z·z + depth.w.
+/// Coefficients of a projection from view space (x, y, z) to clip space: x' = scale.x·x + slide.x·z + offset.x, z' =
+/// depth.x·z + depth.y, w' = depth.z·z + depth.w.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
-    /// What z and w of clip space are made of.
+    /// Coefficients of z and w in clip space.
     pub depth: DVec4,
-    /// Factors on x and y.
+    /// Coefficients of view-space x and y in clip-space x and y.
     pub scale: DVec2,
-    /// Factors on z.
+    /// Coefficients of view-space z in clip-space x and y.
     pub slide: DVec2,
-    /// What is added.
+    /// Constant terms of clip-space x and y.
     pub offset: DVec2,
 }
 
-/// z in view space of a depth.
+/// Returns z in view space of a depth.
 pub fn view_z(depth: f64, row: DVec4) -> f64 {
     (row.y - depth * row.w) / (depth * row.z - row.x)
 }
 
-/// Position in view space of a depth at normalized device coordinates.
+/// Returns the view-space position of a depth at normalized device coordinates.
 pub fn view_position(ndc: DVec2, depth: f64, p: Projection) -> DVec3 {
     let z = view_z(depth, p.depth);
     let w = p.depth.z * z + p.depth.w;
     ((ndc * w - p.slide * z - p.offset) / p.scale).extend(z)
 }
 
-/// Normalized device coordinates and depth of a position in view space.
+/// Returns the normalized device coordinates and depth of a view-space position.
 pub fn ndc_from_view(position: DVec3, p: Projection) -> DVec3 {
     let (xy, z) = (position.truncate(), position.z);
     let w = (p.depth.z * z + p.depth.w).max(1e-6);
@@ -40,10 +40,10 @@ mod tests {
     use super::*;
     use glam::{DMat4, DVec4};
 
-    /// Both kinds of projection, and one off the middle, undone.
+    /// Verifies the round trip for perspective, orthographic and off-center projections.
     #[test]
     fn positions_come_back() {
-        // Reversed depth; rows of z and w as (of z, constant).
+        // Reversed depth; rows of z and w as (factor of z, constant).
         let matrix = |scale: [f64; 2], slide: [f64; 2], offset: [f64; 2], depth: [f64; 4]| {
             DMat4::from_cols(
                 DVec4::new(scale[0], 0.0, 0.0, 0.0),

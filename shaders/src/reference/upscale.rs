@@ -1,9 +1,9 @@
-//! Mirror of `wgsl/lib/upscale.wgsl`, and of the whole filter.
+//! Mirror of `wgsl/lib/upscale.wgsl`, and of the complete filter.
 
 use super::luminance::luminance;
 use glam::{DVec2, DVec3, DVec4};
 
-/// What a texel with its four neighbors tells of the edge through it.
+/// Returns the edge through a texel, estimated from its four neighbors.
 pub fn edge_of(middle: f64, up: f64, left: f64, right: f64, down: f64) -> DVec3 {
     let (x, y) = (right - left, down - up);
     let straight =
@@ -11,7 +11,7 @@ pub fn edge_of(middle: f64, up: f64, left: f64, right: f64, down: f64) -> DVec3 
     DVec3::new(x, y, straight(x, left, right).powi(2) + straight(y, up, down).powi(2))
 }
 
-/// The ellipse of an edge.
+/// Returns the elliptical kernel of an edge.
 pub fn kernel_of(edge: DVec3) -> DVec4 {
     let along = edge.truncate();
     let direction = if along.length_squared() < 1.0 / 32768.0 { DVec2::X } else { along.normalize() };
@@ -20,7 +20,7 @@ pub fn kernel_of(edge: DVec3) -> DVec4 {
     DVec4::new(direction.x, direction.y, 1.0 + (stretch - 1.0) * strength, 1.0 - 0.5 * strength)
 }
 
-/// Weight of a texel so far from the place.
+/// Returns the weight of a texel at this offset.
 pub fn kernel_weight(offset: DVec2, kernel: DVec4, straight: f64) -> f64 {
     let direction = DVec2::new(kernel.x, kernel.y);
     let turned = DVec2::new(offset.dot(direction), offset.dot(direction.perp()));
@@ -30,8 +30,8 @@ pub fn kernel_weight(offset: DVec2, kernel: DVec4, straight: f64) -> f64 {
     (25.0 / 16.0 * base * base - 9.0 / 16.0) * window * window
 }
 
-/// A picture of encoded color, rows from the top, at a place in texels from the top left: the four texels about it bound what the
-/// twelve come to.
+/// Upscales an encoded image at a position in texels from the top left. The result is clamped to the range of the four
+/// nearest texels.
 pub fn upscaled(texel: impl Fn(i64, i64) -> DVec3, place: DVec2) -> DVec3 {
     let corner = (place - 0.5).floor();
     let share = place - 0.5 - corner;
@@ -47,7 +47,7 @@ pub fn upscaled(texel: impl Fn(i64, i64) -> DVec3, place: DVec2) -> DVec3 {
     let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
     for y in -1..=2_i64 {
         for x in -1..=2_i64 {
-            // The four in the corners are left out.
+            // The four corners are left out.
             if !((x == -1 || x == 2) && (y == -1 || y == 2)) {
                 let weight = kernel_weight(DVec2::new(x as f64, y as f64) - share, kernel, edge.z);
                 (sum, weights) = (sum + weight * at(x, y), weights + weight);
@@ -63,7 +63,8 @@ pub fn upscaled(texel: impl Fn(i64, i64) -> DVec3, place: DVec2) -> DVec3 {
 mod tests {
     use super::*;
 
-    /// What is even has no edge and stays; an upright step is an edge across x, sharper than a line between its texels.
+    /// Verifies that constant areas stay constant, and that a vertical step stays steeper than with linear
+    /// interpolation.
     #[test]
     fn even_areas_stay_and_steps_stay_steep() {
         assert_eq!(edge_of(0.3, 0.3, 0.3, 0.3, 0.3), DVec3::ZERO);

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// offset + (x_axis y_axis) · uv.
+/// Returns offset + (x_axis y_axis) · uv.
 pub fn transform_uv(uv: DVec2, x_axis: DVec2, y_axis: DVec2, offset: DVec2) -> DVec2 {
     offset + x_axis * uv.x + y_axis * uv.y
 }

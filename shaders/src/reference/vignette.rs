@@ -2,12 +2,12 @@
 
 use glam::DVec2;
 
-/// Share of the light that arrives, by the cosine-fourth law.
+/// Returns the transmitted share of light, by the cosine-fourth law.
 pub fn vignette_transmittance(radius2: f64, falloff: f64) -> f64 {
     (1.0 + falloff * radius2).powi(-2)
 }
 
-/// Share of the picture that is left where it fades into a color toward its edges.
+/// Returns the share of the image that remains in a fade toward the edges.
 pub fn edge_share(from_middle: DVec2, [scale, aspect, radius, falloff]: [f64; 4]) -> f64 {
     let d = (from_middle.abs() * scale * DVec2::new(aspect, 1.0)).clamp(DVec2::ZERO, DVec2::ONE);
     let corner = d.max(DVec2::splat(1e-10)).powf(radius);

@@ -2,17 +2,17 @@
 
 use glam::DVec4;
 
-/// Largest weighted radiance of one fragment.
+/// Maximum weighted radiance of one fragment.
 const WEIGHTED_MAX: f64 = 8000.0;
 
-/// Weight of a fragment, without its factor alpha, for a distance ahead of the eye in m (McGuire and Bavoil 2013, equation 7,
-/// divided by 32).
+/// Returns the weight of a fragment, without its factor alpha, at a distance ahead of the eye in m (McGuire and Bavoil
+/// 2013, equation 7, divided by 32).
 pub fn blend_weight(distance_m: f64) -> f64 {
     let z = distance_m.abs().clamp(0.0, 1e4);
     (10.0 / (1e-5 + (z / 5.0).powi(2) + (z / 200.0).powi(6))).clamp(1e-2, 3e3) / 32.0
 }
 
-/// What a fragment adds to the sums; `color` is multiplied by its alpha already.
+/// Returns the fragment's contribution to the sums; `color` is premultiplied by alpha.
 pub fn weighted_color(color: DVec4, distance_m: f64) -> DVec4 {
     let weight = color.w * blend_weight(distance_m);
     (color.truncate() * weight).min(glam::DVec3::splat(WEIGHTED_MAX)).extend(color.w * weight)
@@ -23,7 +23,7 @@ mod tests {
     use super::*;
     use half::f16;
 
-    /// Nearer fragments have larger weights, and eight of the brightest fit a half float.
+    /// Verifies that nearer fragments have larger weights, and that a sum of eight maximal fragments fits a half float.
     #[test]
     fn weights_fall_with_distance_and_sums_are_half_floats() {
         let mut last = f64::INFINITY;
@@ -34,11 +34,11 @@ mod tests {
         }
         let brightest = weighted_color(DVec4::new(65504.0, 65504.0, 65504.0, 1.0), 0.01);
         assert!(f16::from_f64(8.0 * brightest.x).is_finite() && f16::from_f64(64.0 * brightest.w).is_finite());
-        // The control: the published weights overflow for a radiance of 25.
+        // Without the division, the published weights overflow for a radiance of 25.
         assert!(f16::from_f64(32.0 * blend_weight(0.01) * 25.0).is_infinite());
     }
 
-    /// One layer is composed as it is, whatever its distance.
+    /// Verifies that a single layer is composited unchanged at any distance.
     #[test]
     fn the_weight_of_a_single_layer_cancels() {
         let color = DVec4::new(0.2, 0.1, 0.05, 0.4);

@@ -1,31 +1,30 @@
-//! The parts of a shader's interface, as plain data.
+//! Types that describe a shader's interface.
 
-/// Everything a pipeline needs to know of a shader.
+/// Complete interface of a shader, as needed to create pipelines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reflection {
-    /// In the order of the text.
+    /// Entry points, in the order of the text.
     pub entry_points: Vec<EntryPoint>,
     /// Pipeline-overridable constants, in the order of the text.
     pub overrides: Vec<Override>,
-    /// Structs that uniform and storage variables hold, directly, in arrays or in other
-    /// structs; each once.
+    /// Structs that uniform and storage variables hold directly, in arrays or in other structs. Each is listed once.
     pub structs: Vec<StructLayout>,
 }
 
-/// A function that a pipeline can name.
+/// Function that a pipeline can name as its entry point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EntryPoint {
-    /// Name in the text.
+    /// Name in the WGSL text.
     pub name: String,
-    /// Stage it runs in.
+    /// Shader stage.
     pub stage: Stage,
-    /// Resources it reaches, directly or through what it calls, ordered by group and binding.
+    /// Resources that the entry point and its callees use, ordered by group and binding.
     pub bindings: Vec<Binding>,
-    /// Vertex stage: attributes by location. Empty for other stages.
+    /// Attributes by location for the vertex stage; empty for other stages.
     pub vertex_inputs: Vec<Attribute>,
-    /// Fragment stage: color outputs by location. Empty for other stages.
+    /// Color outputs by location for the fragment stage; empty for other stages.
     pub color_outputs: Vec<Attribute>,
-    /// Compute stage: invocations per workgroup; zeros for other stages.
+    /// Invocations per workgroup for the compute stage; zeros for other stages.
     pub workgroup_size: [u32; 3],
 }
 
@@ -38,62 +37,62 @@ pub enum Stage {
     Compute,
 }
 
-/// A resource variable.
+/// Resource variable.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Binding {
-    /// `@group`.
+    /// Number in `@group`.
     pub group: u32,
-    /// `@binding`.
+    /// Number in `@binding`.
     pub binding: u32,
     /// Name of the variable.
     pub name: String,
-    /// What is bound there.
+    /// Type of the bound resource.
     pub kind: BindingKind,
 }
 
-/// What a binding holds.
+/// Type of a bound resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BindingKind {
-    /// `var<uniform>`.
+    /// Uniform buffer, `var<uniform>`.
     Uniform {
         /// Size of the struct in bytes.
         size_bytes: u32,
     },
-    /// `var<storage>`.
+    /// Storage buffer, `var<storage>`.
     Storage {
         /// False for `read_write`.
         read_only: bool,
-        /// Least size of the buffer in bytes; for a run-time sized array that of one element.
+        /// Minimum size of the buffer in bytes; for a runtime-sized array, the size of one element.
         min_size_bytes: u32,
     },
-    /// `texture_*`.
+    /// Sampled or depth texture, `texture_*`.
     Texture {
-        /// Shape of the view.
+        /// Dimension of the view.
         dimension: Dimension,
-        /// What reading it gives.
+        /// Type of the values that shaders read.
         sample: Sample,
-        /// Whether it has several samples per texel.
+        /// True for multisampled textures.
         multisampled: bool,
     },
-    /// `texture_storage_*`; `format` is the WGSL name.
+    /// Storage texture, `texture_storage_*`.
     StorageTexture {
-        /// Shape of the view.
+        /// Dimension of the view.
         dimension: Dimension,
         /// Texel format as written in WGSL.
         format: naga::StorageFormat,
-        /// Whether shaders may read it.
+        /// True if shaders can read it.
         read: bool,
-        /// Whether shaders may write it.
+        /// True if shaders can write it.
         write: bool,
     },
     /// `sampler` or `sampler_comparison`.
     Sampler {
-        /// Whether it compares.
+        /// True for a comparison sampler.
         comparison: bool,
     },
 }
 
-/// Shape of a texture view.
+/// Dimension of a texture view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(missing_docs, reason = "the names are the field's own")]
 pub enum Dimension {
@@ -105,12 +104,13 @@ pub enum Dimension {
     CubeArray,
 }
 
-/// What reading a texture gives.
+/// Type of the values read from a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Sample {
-    /// Floats; `filterable` where some entry point samples it through a sampler.
+    /// Floats.
     Float {
-        /// Whether the format must support linear filtering.
+        /// True if an entry point samples the texture through a filtering sampler, so the format must support linear
+        /// filtering.
         filterable: bool,
     },
     /// Depth, read by comparison or as a number.
@@ -121,18 +121,18 @@ pub enum Sample {
     Uint,
 }
 
-/// A value that enters or leaves a stage at a location.
+/// Value that enters or leaves a stage at a location.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Attribute {
-    /// `@location`.
+    /// Number in `@location`.
     pub location: u32,
-    /// Kind of its components.
+    /// Component type.
     pub scalar: Scalar,
     /// Number of components, 1…4.
     pub components: u32,
 }
 
-/// Kind of a component.
+/// Type of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(missing_docs, reason = "the names are the field's own")]
 pub enum Scalar {
@@ -143,14 +143,14 @@ pub enum Scalar {
     Bool,
 }
 
-/// A pipeline-overridable constant.
+/// Pipeline-overridable constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Override {
-    /// Name, the key under which a pipeline sets it.
+    /// Name, which is the key for setting it in a pipeline.
     pub name: String,
-    /// Kind of its value.
+    /// Type of the value.
     pub scalar: Scalar,
-    /// Its value where the pipeline sets none, if it is a literal; bools as 0 and 1.
+    /// Default value, if it is a literal; booleans are 0 and 1.
     pub default: Option<f64>,
 }
 
@@ -159,45 +159,44 @@ pub struct Override {
 pub struct StructLayout {
     /// Name of the struct.
     pub name: String,
-    /// Size in bytes, padding at the end included.
+    /// Size in bytes, including padding at the end.
     pub size_bytes: u32,
-    /// In order.
+    /// Members in order.
     pub members: Vec<Member>,
 }
 
-/// A member of a struct.
+/// Member of a struct.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Member {
-    /// Its name.
+    /// Name of the member.
     pub name: String,
-    /// Where it begins, from the start of the struct.
+    /// Offset from the start of the struct, in bytes.
     pub offset_bytes: u32,
-    /// Its own size, without what pads it.
+    /// Size in bytes, without padding.
     pub size_bytes: u32,
 }
 
-/// A binding and the stages of one pipeline that reach it.
+/// Binding, and the stages of one pipeline that use it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Slot {
-    /// The binding.
+    /// The resource variable.
     pub binding: Binding,
-    /// Reached by the vertex stage.
+    /// True if the vertex stage uses it.
     pub vertex: bool,
-    /// Reached by the fragment stage.
+    /// True if the fragment stage uses it.
     pub fragment: bool,
-    /// Reached by the compute stage.
+    /// True if the compute stage uses it.
     pub compute: bool,
 }
 
 impl Reflection {
-    /// The entry point of that name.
+    /// Returns the entry point of this name.
     pub fn entry_point(&self, name: &str) -> Option<&EntryPoint> {
         self.entry_points.iter().find(|entry| entry.name == name)
     }
 
-    /// The layout of a pipeline made of the named entry points: for each group from zero to
-    /// the highest in use, its slots by binding. A group that none reaches is empty. Names
-    /// that do not exist contribute nothing.
+    /// Returns the bind groups of a pipeline with the named entry points: for each group from zero to the highest in
+    /// use, its slots by binding. Unused groups are empty. Unknown names are ignored.
     pub fn groups(&self, entry_points: &[&str]) -> Vec<Vec<Slot>> {
         let mut groups: Vec<Vec<Slot>> = Vec::new();
         for entry in entry_points.iter().filter_map(|name| self.entry_point(name)) {
@@ -213,7 +212,7 @@ impl Reflection {
     }
 }
 
-/// Adds a stage to the slot of a binding, making the slot where there is none.
+/// Adds a stage to the slot of a binding; creates the slot if necessary.
 fn add(slots: &mut Vec<Slot>, binding: &Binding, stage: Stage) {
     let found = slots.binary_search_by_key(&binding.binding, |slot| slot.binding.binding);
     let at = found.unwrap_or_else(|at| {
@@ -230,7 +229,7 @@ fn add(slots: &mut Vec<Slot>, binding: &Binding, stage: Stage) {
     }
 }
 
-/// A texture that one stage filters and another only loads must be filterable.
+/// Merges the kinds of one binding in two stages. A texture that either stage filters must be filterable.
 fn widest(a: BindingKind, b: BindingKind) -> BindingKind {
     let filterable = |kind| matches!(kind, BindingKind::Texture { sample: Sample::Float { filterable: true }, .. });
     if filterable(b) { b } else { a }

@@ -1,23 +1,24 @@
-//! How much a function computes, counted in naga's module: a measure of cost without noise, and without a device.
+//! Counts of the operations in a function, taken from naga's module: a deterministic measure of cost that needs no
+//! device.
 
 use naga::{Expression, Function, Handle, MathFunction, Module, Statement};
 use std::collections::BTreeMap;
 
-/// What a function and all that it calls evaluate, as written: bodies of loops once, both ways of a branch.
+/// Operations of a function and all its callees, as written: loop bodies count once, and both sides of a branch count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
-    /// Sums, products, comparisons, limits and the like, of scalars or of vectors.
+    /// Sums, products, comparisons, clamps and similar operations on scalars or vectors.
     pub arithmetic: u32,
-    /// Roots, powers, logarithms, sines.
+    /// Roots, powers, logarithms and trigonometric functions.
     pub transcendental: u32,
-    /// Texels fetched or filtered.
+    /// Texture loads and samples.
     pub texture: u32,
-    /// From one kind of number to another.
+    /// Conversions between number types.
     pub conversion: u32,
 }
 
 impl Operations {
-    /// All of them.
+    /// Returns the sum of all counts.
     pub fn total(self) -> u32 {
         self.arithmetic + self.transcendental + self.texture + self.conversion
     }
@@ -29,7 +30,8 @@ impl Operations {
         self.conversion += other.conversion;
     }
 
-    /// Of a function in a plain WGSL text; nothing where the text is none or has no function of that name.
+    /// Counts the operations of a function in plain WGSL. Returns `None` if the text is invalid or lacks a function of
+    /// this name.
     pub fn of(wgsl: &str, function: &str) -> Option<Self> {
         let module = naga::front::wgsl::parse_str(wgsl).ok()?;
         let (handle, _) = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(function))?;

@@ -1,4 +1,4 @@
-//! Reading naga's module into plain data.
+//! Conversion of naga's module into plain data.
 
 use std::collections::BTreeSet;
 
@@ -53,7 +53,7 @@ fn by_location(attributes: impl Iterator<Item = Attribute>, wanted: bool) -> Vec
     list
 }
 
-/// The located values of an argument or result: itself, or the members of a struct.
+/// Returns the values with a location in an argument or result: the value itself, or the members of a struct.
 fn attributes(module: &Module, ty: Handle<naga::Type>, binding: Option<&naga::Binding>) -> Vec<Attribute> {
     let located = |ty: Handle<naga::Type>, binding: Option<&naga::Binding>| {
         let Some(naga::Binding::Location { location, .. }) = binding else {
@@ -83,7 +83,7 @@ fn scalar_of(scalar: naga::Scalar) -> Option<Scalar> {
     }
 }
 
-/// The resources an entry point reaches, ordered by group and binding.
+/// Returns the resources that an entry point uses, ordered by group and binding.
 fn bindings(module: &Module, info: &FunctionInfo) -> Vec<Binding> {
     let mut list: Vec<Binding> = module
         .global_variables
@@ -183,8 +183,8 @@ fn literal(module: &Module, expression: Handle<Expression>) -> Option<f64> {
     }
 }
 
-/// The structs that uniform and storage variables hold, directly, in arrays or in other
-/// structs; each once, in the order of the text.
+/// Returns the structs that uniform and storage variables hold directly, in arrays or in other structs. Each appears
+/// once, in the order of the text.
 fn structs(module: &Module) -> Vec<StructLayout> {
     let mut reached = BTreeSet::new();
     for (_, variable) in module.global_variables.iter() {

@@ -1,15 +1,16 @@
-//! Validation by naga, whose complaints are told in terms of the author's files.
+//! Validation by naga, with errors mapped to the author's files.
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 use super::link::Linked;
 use crate::ShaderError;
 
-/// Parses and validates the text with all optional capabilities allowed: whether the device at hand has them is for the
-/// device to say.
+/// Parses and validates the text with all optional capabilities allowed. The device checks later whether it supports
+/// them.
 ///
 /// # Errors
-/// naga's, with file and line.
+///
+/// Errors of naga, with file and line.
 pub(super) fn check(linked: &Linked) -> Result<(naga::Module, ModuleInfo), ShaderError> {
     let fault = |span: Option<naga::Span>, message: String| {
         let (file, line) = linked.origin(span.and_then(|span| span.to_range()).map_or(0, |range| range.start));
@@ -27,7 +28,7 @@ pub(super) fn check(linked: &Linked) -> Result<(naga::Module, ModuleInfo), Shade
     Ok((module, info))
 }
 
-/// An error and its causes in one line.
+/// Formats an error and its causes in one line.
 fn chain(error: &dyn std::error::Error) -> String {
     let mut line = error.to_string();
     let mut cause = error.source();

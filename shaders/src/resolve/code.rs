@@ -1,4 +1,4 @@
-//! Tokens with their brackets matched: where the item that begins at a token ends.
+//! Tokens with matched brackets, which show where an item ends.
 
 use super::fault::Fault;
 use super::token::{Kind, Token, tokens};
@@ -8,7 +8,7 @@ use super::token::{Kind, Token, tokens};
 pub(super) struct Code<'a> {
     pub text: &'a str,
     pub tokens: Vec<Token>,
-    /// For each opening bracket the index of the closing one; for other tokens their own.
+    /// Index of the closing bracket for each opening bracket; for other tokens, their own index.
     close: Vec<usize>,
 }
 
@@ -16,15 +16,17 @@ impl<'a> Code<'a> {
     /// Reads a text.
     ///
     /// # Errors
-    /// When a comment or a bracket is not closed, or a bracket closes nothing.
+    ///
+    /// If a comment or a bracket is not closed, or a closing bracket has no opening one.
     pub fn new(text: &'a str) -> Result<Self, Fault> {
         Self::of(text, tokens(text)?)
     }
 
-    /// Some of the tokens of a text, in order.
+    /// Wraps some of the tokens of a text, in order.
     ///
     /// # Errors
-    /// When their brackets do not match.
+    ///
+    /// If their brackets do not match.
     pub fn of(text: &'a str, tokens: Vec<Token>) -> Result<Self, Fault> {
         let mut close: Vec<usize> = (0..tokens.len()).collect();
         let mut open: Vec<(usize, char)> = Vec::new();
@@ -53,32 +55,32 @@ impl<'a> Code<'a> {
         }
     }
 
-    /// Text of a token; nothing beyond the last.
+    /// Returns the text of a token; empty after the last token.
     pub fn word(&self, at: usize) -> &'a str {
         self.tokens.get(at).map_or("", |token| &self.text[token.start..token.end])
     }
 
-    /// Whether a token is this mark.
+    /// Returns true if a token is this mark.
     pub fn is(&self, at: usize, mark: char) -> bool {
         self.tokens.get(at).is_some_and(|token| token.kind == Kind::Mark(mark))
     }
 
-    /// Whether a token is a word.
+    /// Returns true if a token is a word.
     pub fn is_word(&self, at: usize) -> bool {
         self.tokens.get(at).is_some_and(|token| token.kind == Kind::Word)
     }
 
-    /// The closing bracket of an opening one; of anything else the same index.
+    /// Returns the index of the closing bracket for an opening one; for other tokens, the same index.
     pub fn close(&self, at: usize) -> usize {
         self.close.get(at).copied().unwrap_or(at)
     }
 
-    /// Line of a token, or of the last one.
+    /// Returns the line of a token, or of the last one.
     pub fn line(&self, at: usize) -> usize {
         self.tokens.get(at).or(self.tokens.last()).map_or(1, |token| token.line)
     }
 
-    /// The first token after the attributes that begin at `at`.
+    /// Returns the first token after the attributes that begin at `at`.
     pub fn after_attributes(&self, mut at: usize) -> usize {
         while self.is(at, '@') {
             at += 2;
@@ -89,7 +91,7 @@ impl<'a> Code<'a> {
         at
     }
 
-    /// One past the last token of the declaration or statement that begins at `start`, at most `end`.
+    /// Returns the index after the last token of the declaration or statement that begins at `start`, at most `end`.
     pub fn statement_end(&self, start: usize, end: usize) -> usize {
         let mut at = self.after_attributes(start);
         let keyword = self.word(at);
@@ -112,7 +114,7 @@ impl<'a> Code<'a> {
         end
     }
 
-    /// One past the comma after the parameter or member that begins at `start`, at most `end`.
+    /// Returns the index after the comma that follows the parameter or member at `start`, at most `end`.
     pub fn member_end(&self, start: usize, end: usize) -> usize {
         let (mut at, mut templates) = (start, 0_usize);
         while at < end {

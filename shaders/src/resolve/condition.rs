@@ -1,19 +1,20 @@
-//! Conditional translation: what `@if`, `@elif` and `@else` leave of a text.
+//! Conditional translation: evaluates `@if`, `@elif` and `@else`.
 //!
-//! The attributes stand before all others of a declaration, import, parameter, struct member or statement. `@elif` and
-//! `@else` belong to the item right before them.
+//! The attributes precede all other attributes of a declaration, import, parameter, struct member or statement. `@elif`
+//! and `@else` belong to the item directly before them.
 
 use super::code::Code;
 use super::fault::Fault;
 use super::token::Token;
 
-/// Whether a feature is on; `None` if there is no such feature.
+/// Returns the state of a feature, or `None` for an unknown feature.
 pub(super) type IsOn<'a> = dyn Fn(&str) -> Option<bool> + 'a;
 
-/// The tokens that remain.
+/// Returns the tokens of active items.
 ///
 /// # Errors
-/// When a condition is wrong, names an unknown feature, or stands where no condition may.
+///
+/// If a condition is invalid, names an unknown feature, or appears where conditions are not allowed.
 pub(super) fn translate<'a>(code: &Code<'a>, features: &IsOn<'_>) -> Result<Code<'a>, Fault> {
     let mut kept = Vec::with_capacity(code.tokens.len());
     let translation = Translation { code, features };
@@ -30,7 +31,7 @@ impl Translation<'_, '_> {
     /// Keeps the items from `start` to `end`: members and parameters, or declarations and statements.
     fn items(&self, start: usize, end: usize, members: bool, kept: &mut Vec<Token>) -> Result<(), Fault> {
         let code = self.code;
-        // Whether a branch was taken of the conditions that an `@else` may follow.
+        // State of the condition that an `@else` may follow.
         let mut taken: Option<bool> = None;
         let mut at = start;
         while at < end {
@@ -57,7 +58,7 @@ impl Translation<'_, '_> {
         Ok(())
     }
 
-    /// Keeps one item, without what is off inside of it.
+    /// Keeps one item, without inactive items inside it.
     fn item(&self, start: usize, end: usize, kept: &mut Vec<Token>) -> Result<(), Fault> {
         let code = self.code;
         let keyword = code.after_attributes(start);
@@ -80,7 +81,7 @@ impl Translation<'_, '_> {
         Ok(())
     }
 
-    /// The name of the condition that a token begins.
+    /// Returns the name of the condition that begins at a token.
     fn attribute(&self, at: usize) -> Option<&str> {
         let name = self.code.word(at + 1);
         (self.code.is(at, '@') && matches!(name, "if" | "elif" | "else")).then_some(name)
@@ -90,7 +91,7 @@ impl Translation<'_, '_> {
         Fault::new(self.code.line(at), format!("`@{}` follows no `@if`", self.code.word(at + 1)))
     }
 
-    /// The value of the condition in the bracket at `open`, and the token after it.
+    /// Returns the value of the condition whose bracket opens at `open`, and the index after it.
     fn condition(&self, open: usize) -> Result<(bool, usize), Fault> {
         if !self.code.is(open, '(') {
             return Err(Fault::new(self.code.line(open), "a condition in brackets is missing"));
@@ -104,7 +105,7 @@ impl Translation<'_, '_> {
         Ok((value, close + 1))
     }
 
-    /// `a || b || …`
+    /// Evaluates `a || b || …`.
     fn any(&self, at: usize) -> Result<(bool, usize), Fault> {
         let (mut value, mut next) = self.all(at)?;
         while self.code.is(next, '|') && self.code.is(next + 1, '|') {
@@ -114,7 +115,7 @@ impl Translation<'_, '_> {
         Ok((value, next))
     }
 
-    /// `a && b && …`
+    /// Evaluates `a && b && …`.
     fn all(&self, at: usize) -> Result<(bool, usize), Fault> {
         let (mut value, mut next) = self.single(at)?;
         while self.code.is(next, '&') && self.code.is(next + 1, '&') {
@@ -124,7 +125,7 @@ impl Translation<'_, '_> {
         Ok((value, next))
     }
 
-    /// `a`, `!a`, `(…)`
+    /// Evaluates `a`, `!a` or `(…)`.
     fn single(&self, at: usize) -> Result<(bool, usize), Fault> {
         let code = self.code;
         if code.is(at, '!') {

@@ -1,4 +1,4 @@
-//! Tokens of embedded files, which most shaders import: each file is read once in a program.
+//! Token cache of embedded files: each file is read once per program.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -7,10 +7,11 @@ use super::code::Code;
 use super::fault::Fault;
 use crate::library;
 
-/// Tokens of the embedded file of this path, if there is one.
+/// Returns the tokens of the embedded file with this path, if it exists.
 ///
 /// # Errors
-/// When a comment or a bracket is not closed, which takes a text in the place of the embedded one.
+///
+/// If a comment or a bracket is not closed. This requires a text that replaces the embedded file.
 pub(super) fn code(path: &str) -> Result<Option<&'static Code<'static>>, Fault> {
     static READ: Mutex<BTreeMap<String, &'static Code<'static>>> = Mutex::new(BTreeMap::new());
     let Some(text) = library::in_use(path) else { return Ok(None) };

@@ -1,12 +1,12 @@
-//! A fault that the resolver finds in one file.
+//! Error that the resolver finds in one file.
 
 use crate::ShaderError;
 
-/// What is wrong with a file, and in which line.
+/// Error in a file, with its line.
 pub(super) struct Fault {
-    /// Line, from one.
+    /// Line number, starting at 1.
     pub line: usize,
-    /// One line without file and line.
+    /// One-line message without file and line.
     pub message: String,
 }
 
@@ -21,7 +21,7 @@ impl Fault {
         Self { line, message: message.into() }
     }
 
-    /// The same as a fault of `file`.
+    /// Converts the fault into an error of `file`.
     pub fn at(self, file: &str) -> ShaderError {
         ShaderError::Source { file: file.to_owned(), line: self.line, message: self.message }
     }

@@ -1,4 +1,4 @@
-//! Joining a file with what it imports: one text, of what its entry points reach.
+//! Linking: combines a file with its imports into one text of the declarations that its entry points reach.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,20 +11,20 @@ use super::module::{Declaration, Module};
 use crate::ShaderError;
 use crate::effect::FOLDER;
 
-/// Tokens of a file by its path; `None` where there is none.
+/// Loads the tokens of a file by its path; returns `None` for a missing file.
 pub(super) type Load<'a, 'b> = dyn Fn(&str) -> Result<Option<Cow<'a, Code<'a>>>, Fault> + 'b;
 
-/// The joined text, and where each of its lines came from.
+/// Linked text, with the origin of each line.
 pub(super) struct Linked {
     pub wgsl: String,
     /// Paths of all files that were read.
     pub files: Vec<String>,
-    /// (index of the file, line) by line of `wgsl`, from zero.
+    /// (index of the file, line) for each line of `wgsl`, starting at 0.
     origins: Vec<(usize, usize)>,
 }
 
 impl Linked {
-    /// File and line that a byte of the text came from.
+    /// Returns the file and line of a byte in the text.
     pub fn origin(&self, byte: usize) -> (&str, usize) {
         let before = &self.wgsl.as_bytes()[..byte.min(self.wgsl.len())];
         let line = before.iter().filter(|byte| **byte == b'\n').count();
@@ -32,13 +32,13 @@ impl Linked {
         found.map_or((&self.files[0], 1), |(file, line)| (&self.files[*file], *line))
     }
 
-    /// File and line of every line of the text.
+    /// Returns the file and line of every line of the text.
     #[cfg(feature = "replaced")]
     pub fn lines(&self) -> impl Iterator<Item = (&str, usize)> {
         self.origins.iter().map(|(file, line)| (self.files[*file].as_str(), *line))
     }
 
-    /// Writes tokens as they stand in their file, without comments and empty lines, and with `numbers` in their places.
+    /// Writes tokens as they appear in their file, without comments and empty lines, and substitutes `numbers`.
     fn print(&mut self, file: usize, module: &Module<'_>, tokens: Range<usize>, numbers: &Numbers) {
         let code = &module.code;
         for at in tokens.clone() {
@@ -67,19 +67,20 @@ impl Linked {
     }
 }
 
-/// Numbers that replace those written, by file and token.
+/// Replacement numbers by file and token.
 type Numbers = BTreeMap<(usize, usize), u32>;
 
-/// Files that were read, the first of them the root, by path.
+/// Files that were read. The first is the root.
 struct Modules<'a> {
     list: Vec<(String, Module<'a>)>,
     by_path: BTreeMap<String, usize>,
 }
 
-/// Joins a file, `root`, with what it imports.
+/// Links the file `root` with its imports.
 ///
 /// # Errors
-/// With file and line where a text cannot be read, an import names nothing, or a name is declared in two files.
+///
+/// With file and line if a text cannot be read, an import names a missing item, or two files declare the same name.
 pub(super) fn link<'a>(
     file: &str,
     root: &Code<'a>,
@@ -90,7 +91,7 @@ pub(super) fn link<'a>(
     let reached = modules.reached();
     modules.refuse_doubles(&reached)?;
 
-    // The root first, then by path; each file in its own order.
+    // The root comes first, then files by path; declarations keep the order of their file.
     let mut order: Vec<usize> = (0..modules.list.len()).collect();
     order.sort_by_key(|index| (*index != 0, &modules.list[*index].0));
     let files = modules.list.iter().map(|(file, _)| file.clone()).collect();
@@ -125,7 +126,7 @@ pub(super) fn link<'a>(
 }
 
 impl<'a> Modules<'a> {
-    /// Reads the root and all that it imports, directly or not. Files may import each other.
+    /// Reads the root and all its direct and indirect imports. Files may import each other.
     fn read(file: &str, root: &Code<'a>, load: &Load<'a, '_>, features: &IsOn<'_>) -> Result<Self, ShaderError> {
         let root = Module::read(root, features).map_err(|fault| fault.at(file))?;
         let mut modules = Self { list: vec![(file.to_owned(), root)], by_path: BTreeMap::new() };
@@ -160,8 +161,8 @@ impl<'a> Modules<'a> {
         Ok(modules)
     }
 
-    /// The declarations that the entry points of the root reach, as (file, declaration); assertions belong to any file
-    /// that something is reached of.
+    /// Returns the declarations that the root's entry points reach, as (file, declaration). Assertions are included for
+    /// every file with a reached declaration.
     fn reached(&self) -> BTreeSet<(usize, usize)> {
         let mut reached = BTreeSet::new();
         let mut visited = BTreeSet::from([0]);
@@ -190,7 +191,7 @@ impl<'a> Modules<'a> {
         reached
     }
 
-    /// Binding numbers for the effects, whose own begin at 0: those of group 0 that follow the numbers of all others.
+    /// Returns binding numbers for effects, whose own numbers begin at 0. They follow all other numbers of group 0.
     fn effect_bindings(&self, order: &[usize], reached: &BTreeSet<(usize, usize)>) -> Numbers {
         let bindings = |index: usize| {
             let module = &self.list[index].1;
@@ -204,7 +205,8 @@ impl<'a> Modules<'a> {
         places.zip(first..).collect()
     }
 
-    /// Names are kept as written, so no two files may declare the same one. Of two, the root's is reported.
+    /// Fails if two files declare the same name, because names are kept as written. The error points at the root if the
+    /// root is one of them.
     fn refuse_doubles(&self, reached: &BTreeSet<(usize, usize)>) -> Result<(), ShaderError> {
         let mut owners: BTreeMap<&str, usize> = BTreeMap::new();
         for &(index, at) in reached.iter().rev() {

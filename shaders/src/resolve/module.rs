@@ -7,37 +7,37 @@ use super::code::Code;
 use super::condition::{IsOn, translate};
 use super::fault::Fault;
 
-/// A file after conditional translation.
+/// File after conditional translation.
 #[derive(Debug)]
 pub(super) struct Module<'a> {
     pub code: Code<'a>,
-    /// `enable`, `requires` and `diagnostic` directives.
+    /// The directives `enable`, `requires` and `diagnostic`.
     pub directives: Vec<Range<usize>>,
-    /// Imported names.
+    /// Imported items by name.
     pub imports: BTreeMap<&'a str, Import>,
-    /// In the order of the text.
+    /// Declarations in the order of the text.
     pub declarations: Vec<Declaration<'a>>,
-    /// Declarations by name.
+    /// Indices of declarations by name.
     pub named: BTreeMap<&'a str, usize>,
 }
 
-/// Where an imported name is declared.
+/// Origin of an imported name.
 #[derive(Debug)]
 pub(super) struct Import {
-    /// Path of the file, as `lib/ggx.wgsl`.
+    /// Path of the file, such as `lib/ggx.wgsl`.
     pub path: String,
     /// Line of the name in the import statement.
     pub line: usize,
 }
 
-/// A declaration at module scope.
+/// Declaration at module scope.
 #[derive(Debug)]
 pub(super) struct Declaration<'a> {
-    /// Its name; an assertion has none.
+    /// Name; `None` for an assertion.
     pub name: Option<&'a str>,
-    /// Its tokens.
+    /// Range of its tokens.
     pub tokens: Range<usize>,
-    /// It is the entry point of a stage.
+    /// True if it is the entry point of a stage.
     pub is_entry_point: bool,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct Declaration<'a> {
 pub(super) struct Binding {
     pub group: u32,
     pub number: u32,
-    /// The token of `number`.
+    /// Index of the token of `number`.
     pub token: usize,
 }
 
@@ -54,7 +54,8 @@ impl<'a> Module<'a> {
     /// Reads a file.
     ///
     /// # Errors
-    /// When conditions are wrong, an import cannot be read, or a name is declared twice.
+    ///
+    /// If conditions are invalid, an import cannot be read, or a name is declared twice.
     pub fn read(code: &Code<'a>, features: &IsOn<'_>) -> Result<Self, Fault> {
         let code = translate(code, features)?;
         let (mut directives, mut declarations) = (Vec::new(), Vec::new());
@@ -96,14 +97,15 @@ impl<'a> Module<'a> {
         Ok(Self { code, directives, imports, declarations, named })
     }
 
-    /// The names at module scope that a declaration may refer to.
+    /// Returns the names at module scope that a declaration may refer to.
     ///
-    /// Members, the names of members, parameters and variables, and attributes are left out. A local variable of the same
-    /// name as a declaration counts as a reference: too much may be kept, never too little.
+    /// Attributes, accesses to members, and the names of members, parameters and variables are left out. A local
+    /// variable that shares its name with a declaration counts as a reference. The linker may thus keep too many
+    /// declarations, but never too few.
     pub fn references(&self, declaration: &Declaration<'a>) -> impl Iterator<Item = &'a str> {
         let code = &self.code;
         let keyword = code.after_attributes(declaration.tokens.start);
-        // What the brackets of a struct or of parameters hold is `name: type`.
+        // The brackets of a struct or a parameter list contain `name: type`.
         let members = match code.word(keyword) {
             "struct" | "fn" => keyword + 2..code.close(keyword + 2),
             _ => 0..0,
@@ -117,7 +119,7 @@ impl<'a> Module<'a> {
         })
     }
 
-    /// Where a variable is bound, if it says so in numbers.
+    /// Returns the binding of a variable if both numbers are literals.
     pub fn binding(&self, declaration: &Declaration<'a>) -> Option<Binding> {
         let code = &self.code;
         let attributes = declaration.tokens.start..code.after_attributes(declaration.tokens.start);
@@ -144,7 +146,7 @@ impl<'a> Declaration<'a> {
     }
 }
 
-/// What `import package::folder::file::name;` or `…::{name, name};` brings in.
+/// Reads the names that `import package::folder::file::name;` or `…::{name, name};` imports.
 fn read_import<'a>(code: &Code<'a>, start: usize, end: usize) -> Result<Vec<(&'a str, Import)>, Fault> {
     let mut path = Vec::new();
     let mut at = start + 1;

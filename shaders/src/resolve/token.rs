@@ -2,30 +2,30 @@
 
 use super::fault::Fault;
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A keyword or an identifier.
     Word,
     /// A numeric literal.
     Number,
-    /// Any other character, each by itself: `->` is two marks.
+    /// Any other single character: `->` is two marks.
     Mark(char),
 }
 
-/// A token and where it stands.
+/// Token and its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Token {
     pub kind: Kind,
-    /// First byte in the text.
+    /// Start byte in the text.
     pub start: usize,
-    /// First byte after it.
+    /// End byte in the text, exclusive.
     pub end: usize,
-    /// Line, from one.
+    /// Line number, starting at 1.
     pub line: usize,
 }
 
-/// The line breaks of WGSL (section 3.1), all of which end a `//` comment.
+/// Returns true for the line breaks of WGSL (section 3.1), all of which end a `//` comment.
 const fn is_line_break(c: char) -> bool {
     matches!(c, '\n' | '\u{b}' | '\u{c}' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
 }
@@ -34,10 +34,11 @@ fn is_word(c: char) -> bool {
     c == '_' || c.is_alphanumeric()
 }
 
-/// The tokens of a text.
+/// Splits a text into tokens.
 ///
 /// # Errors
-/// When a block comment is not closed.
+///
+/// If a block comment is not closed.
 pub(super) fn tokens(text: &str) -> Result<Vec<Token>, Fault> {
     let mut list = Vec::with_capacity(text.len() / 4);
     let (mut at, mut line) = (0, 1);
@@ -67,7 +68,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Token>, Fault> {
     Ok(list)
 }
 
-/// Length of the block comment that a text begins with; they nest.
+/// Returns the length of the block comment at the start of a text; block comments nest.
 fn block_comment(text: &str) -> Option<usize> {
     let (mut depth, mut at) = (0_usize, 0);
     loop {
@@ -84,7 +85,7 @@ fn block_comment(text: &str) -> Option<usize> {
     }
 }
 
-/// Length of the number that a text begins with: digits, letters and points, and the sign of an exponent.
+/// Returns the length of the number at the start of a text: digits, letters, points, and the sign of an exponent.
 fn number(text: &str) -> usize {
     let hexadecimal = text.starts_with("0x") || text.starts_with("0X");
     let exponents: &[char] = if hexadecimal { &['p', 'P'] } else { &['e', 'E'] };

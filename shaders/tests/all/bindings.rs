@@ -1,4 +1,4 @@
-//! What the shaders bind and read, by group, name and number.
+//! Bindings and inputs of the shaders, by group, name and number.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use framegraph_shaders::{Feature, Features, resolve};
 
 use crate::variants::{self, pass};
 
-/// What is the same all frame: uniforms, lights, shadow map, environment.
+/// Bindings that stay the same for a whole frame: uniforms, lights, shadow map, environment.
 const GROUP_FRAME: usize = 0;
 /// The material: factors, textures, samplers.
 pub const GROUP_MATERIAL: u32 = 1;
@@ -26,7 +26,7 @@ fn one_name_is_one_kind_of_resource_in_all_passes() {
     for variant in &variants::all().0 {
         for binding in variant.shader.reflection.entry_points.iter().flat_map(|e| &e.bindings) {
             let kind = match binding.kind {
-                // Whether a texture is filtered is the entry point's business.
+                // Filtering of a texture depends on the entry point.
                 BindingKind::Texture { dimension, multisampled, .. } => format!("{dimension:?} {multisampled}"),
                 kind => format!("{kind:?}"),
             };

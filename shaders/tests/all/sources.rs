@@ -103,7 +103,7 @@ fn every_file_says_what_it_is_and_stays_small() {
 
 #[test]
 fn every_library_function_is_reached_by_a_pass_or_offered_to_custom_ones() {
-    // Functions that no pass uses yet are for shaders of one's own; each still resolves.
+    // Some functions are only for shaders of applications; each still resolves.
     for source in SOURCES.iter().filter(|source| source.path.starts_with("lib/")) {
         let module = source.path.trim_start_matches("lib/").trim_end_matches(".wgsl");
         for (keyword, name) in declarations(source.wgsl) {

@@ -7,7 +7,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use crate::bindings::GROUP_MATERIAL;
 use crate::variants;
 
-/// What each pass is expected to offer.
+/// Expected entry points of each pass.
 const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("shadow", &["vs_far", "vs_opaque", "vs_mask", "fs_mask", "fs_opaque_moments", "fs_mask_moments"]),
     ("shadow_blur", &["vs_main", "fs_blur", "fs_halve"]),

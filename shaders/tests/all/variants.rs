@@ -29,9 +29,9 @@ impl Variant {
         self.features.contains(Feature::HALF)
     }
 
-    /// What a device must have beyond core WGSL.
+    /// Features that a device needs beyond core WGSL.
     pub fn capabilities(&self) -> Capabilities {
-        // What is composed sample by sample says which one it is, as WebGPU lets every shader do.
+        // Shaders that run per sample read the sample index, as WebGPU allows for every shader.
         let core = Capabilities::MULTISAMPLED_SHADING;
         if self.in_half() { core.union(Capabilities::SHADER_FLOAT16) } else { core }
     }
@@ -54,7 +54,7 @@ pub fn effects() -> &'static [Effect<'static>] {
     &ALL
 }
 
-/// Whether the pass ends with the socket for effects.
+/// Returns true if the pass ends with the socket for effects.
 pub fn takes_effects(pass: &Module<'_>) -> bool {
     pass.wgsl.contains("import package::interface::epilogue::epilogue;")
 }

@@ -1,4 +1,4 @@
-// Effect: the picture fades into a color toward its edges.
+// Effect: the image fades into a color toward its edges.
 
 import package::lib::vignette::edge_share;
 
@@ -6,17 +6,17 @@ import package::lib::vignette::edge_share;
 struct EdgeFadeUniforms {
     /// See `edge_share`.
     shape: vec4<f32>,
-    /// What the edges become, a factor on light; linear Rec.709.
+    /// Factor on light at the edges; linear Rec.709.
     @size(16) color: vec3<f32>,
-    /// Where the middle is, in pixels.
+    /// Center of the fade, in pixels.
     middle_px: vec2<f32>,
-    /// One over the size of what fades, in 1/pixels.
+    /// Reciprocal of the size of the fade, in 1/pixels.
     per_px: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> fading: EdgeFadeUniforms;
 
-/// Scene-referred linear light times the color at the edges; alpha stays.
+/// Multiplies scene-referred linear light by the color at the edges; alpha is unchanged.
 fn edge_fade(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     let left = edge_share((pixel - fading.middle_px) * fading.per_px, fading.shape);
     return vec4<f32>(color.rgb * mix(fading.color, vec3<f32>(1.0), left), color.a);

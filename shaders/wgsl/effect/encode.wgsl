@@ -1,4 +1,4 @@
-// Effect: from linear display light to the codes of the target, dithered.
+// Effect: encodes linear display light for the target, with dithering.
 
 import package::lib::dither::dither_offset;
 import package::lib::luminance::luminance;
@@ -6,27 +6,26 @@ import package::lib::srgb::{linear_from_srgb, srgb_from_linear};
 
 /// Settings of `encode`. Mirrored by `layout::EncodingUniforms`.
 struct EncodingUniforms {
-    /// Amplitude of the dither: 1 for the full half code either way, 0 for none.
+    /// Amplitude of the dither: 1 for ± half a step, 0 for none.
     dither: f32,
-    /// Codes of the target less one: 255 for 8 bits.
+    /// Largest integer value of the target: 255 for 8 bits.
     dither_levels: f32,
-    /// Moves the dither pattern from frame to frame.
+    /// Frame number, which shifts the dither pattern.
     @size(8) frame_index: u32,
 }
 
-/// True writes sRGB encoded values to a Unorm target, as FXAA wants them; false writes linear
-/// ones to an sRGB target, which encodes them itself.
+/// True writes sRGB encoded values to a Unorm target, as FXAA needs; false writes linear values to
+/// an sRGB target, which encodes them.
 override OUTPUT_ENCODED: bool = false;
-/// True writes the luma of the encoded color into alpha for FXAA; false keeps the input's
-/// alpha.
+/// True writes the luma of the encoded color to alpha for FXAA; false keeps the input alpha.
 override LUMA_IN_ALPHA: bool = false;
 
-/// True takes colors that are sRGB encoded already, as a table or the mobile tone curve gives them.
+/// True if the input is already sRGB encoded, from a table or the mobile tone curve.
 override INPUT_ENCODED: bool = false;
 
 @group(0) @binding(0) var<uniform> encoding: EncodingUniforms;
 
-/// What the target is given.
+/// Returns the value to write to the target.
 fn encode(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     let noise = dither_offset(pixel, encoding.frame_index, encoding.dither_levels)
         * encoding.dither;

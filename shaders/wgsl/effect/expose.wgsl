@@ -8,7 +8,7 @@ struct ExposureUniforms {
 
 @group(0) @binding(0) var<uniform> exposing: ExposureUniforms;
 
-/// Scene-referred linear light, brighter or darker; alpha stays.
+/// Scales scene-referred linear light; alpha is unchanged.
 fn expose(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(color.rgb * exposing.scale, color.a);
 }

@@ -8,29 +8,29 @@ import package::lib::night::night_adaptation;
 
 /// Settings of `grade`. Mirrored by `layout::GradingUniforms`.
 struct GradingUniforms {
-    /// From linear Rec.709 to the working primaries, adapted from the white of the scene.
+    /// Linear Rec.709 to the working primaries, including white balance.
     into: mat3x3<f32>,
-    /// Of channels in the working primaries.
+    /// Channel mixer in the working primaries.
     mixer: mat3x3<f32>,
-    /// From the working primaries to linear Rec.709.
+    /// Working primaries to linear Rec.709.
     out_of: mat3x3<f32>,
-    /// Where shadows end and highlights begin, in luminance.
+    /// Luminance limits at which shadows end and highlights begin.
     ranges: vec4<f32>,
-    /// Of luminance in the working primaries.
+    /// Luminance weights of the working primaries.
     weights: vec3<f32>,
-    /// Factor on light: 2^EV.
+    /// Factor on scene light: 2^EV.
     exposure: f32,
     shadows: vec3<f32>,
-    /// 0 is day, 1 is night.
+    /// Night adaptation, from 0 (day) to 1 (night).
     night: f32,
     midtones: vec3<f32>,
-    /// About CONTRAST_PIVOT, in LogC; 1 changes nothing.
+    /// Contrast around CONTRAST_PIVOT, in LogC; 1 changes nothing.
     contrast: f32,
     highlights: vec3<f32>,
-    /// 1 changes nothing.
+    /// Vibrance; 1 changes nothing.
     vibrance: f32,
     slope: vec3<f32>,
-    /// 1 changes nothing, 0 is grey.
+    /// Saturation; 1 changes nothing, 0 is gray.
     saturation: f32,
     @size(16) offset: vec3<f32>,
     @size(16) power: vec3<f32>,
@@ -39,18 +39,19 @@ struct GradingUniforms {
     @size(16) highlight_scale: vec3<f32>,
 }
 
-/// What contrast leaves where it is: 18 % grey in ACEScct.
+/// LogC value that contrast leaves unchanged: 18 % gray in ACEScct.
 const CONTRAST_PIVOT: f32 = 0.4135884;
 
-/// Night adaptation is on.
+/// Enables night adaptation.
 override NIGHT: bool = false;
 
 @group(0) @binding(0) var<uniform> grading: GradingUniforms;
 
-/// Scene-referred linear light, graded: negative where Rec.709 does not reach it. Alpha stays.
+/// Grades scene-referred linear light. Results outside Rec.709 have negative channels. Alpha is
+/// unchanged.
 fn grade(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     let g = grading;
-    // A table of what follows has no negatives, so they count as black here, too.
+    // A grading table cannot hold negative values, so they count as black here, too.
     var c = clamp(color.rgb * g.exposure, vec3<f32>(0.0), vec3<f32>(65504.0));
     if NIGHT {
         c = night_adaptation(c, g.night);

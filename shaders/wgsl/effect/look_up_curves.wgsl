@@ -1,12 +1,12 @@
-// Effect: grading, tone curve and encoding in one step where channels do not mix: a curve each.
+// Effect: grading, tone curve and encoding in one step, with one curve per independent channel.
 
 import package::lib::table::table_coordinates;
 
-/// Codes of sRGB of each channel by the channel before, in LogC.
+/// sRGB encoded channels, by the scene channel in LogC.
 @group(0) @binding(0) var grading_curves: texture_2d<f32>;
 @group(0) @binding(1) var curves_sampler: sampler;
 
-/// sRGB encoded display light in [0, 1]; alpha stays.
+/// Returns sRGB encoded display light in [0, 1]; alpha is unchanged.
 fn look_up_curves(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     let entries = f32(textureDimensions(grading_curves).x);
     let at = table_coordinates(color.rgb, entries);

@@ -4,17 +4,17 @@ import package::lib::tone_map::{TONE_MAP_MOBILE, tone_map, tone_map_mobile};
 
 /// The curve, a TONE_MAP_* of lib/tone_map.wgsl.
 override TONE_MAP: u32 = 1u;
-/// Numbers of the generic curve: contrast, input scale, output scale.
+/// Parameters of the generic curve: contrast, input scale, output scale.
 override GENERIC_CONTRAST: f32 = 1.55;
 override GENERIC_INPUT: f32 = 0.2583;
 override GENERIC_OUTPUT: f32 = 1.0073;
-/// Only luminance goes through the curve.
+/// Applies the curve to luminance only.
 override BY_LUMINANCE: bool = false;
-/// What the display cannot show is moved to where it can, and not cut off.
+/// Maps colors outside the display's gamut into it instead of clipping.
 override INTO_GAMUT: bool = false;
 
-/// Linear display light in [0, 1]; alpha stays. The mobile curve alone gives encoded light, which
-/// `encode` then takes as it is (INPUT_ENCODED), except where luminance or the gamut is looked at.
+/// Returns linear display light in [0, 1]; alpha is unchanged. The mobile curve returns encoded
+/// light, for `encode` with INPUT_ENCODED, except with BY_LUMINANCE or INTO_GAMUT.
 fn tone(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     if TONE_MAP == TONE_MAP_MOBILE && !BY_LUMINANCE && !INTO_GAMUT {
         return vec4<f32>(tone_map_mobile(color.rgb), color.a);

@@ -4,9 +4,9 @@ import package::lib::vignette::vignette_transmittance;
 
 /// Settings of `vignette`. Mirrored by `layout::VignetteUniforms`.
 struct VignetteUniforms {
-    /// Middle of the picture in pixels.
+    /// Center of the image in pixels.
     centre_px: vec2<f32>,
-    /// One over the distance from the middle to a corner, in 1/pixels.
+    /// Reciprocal of the distance from the center to a corner, in 1/pixels.
     per_corner_px: f32,
     /// Growth of the falloff, see lib/vignette.wgsl.
     falloff: f32,
@@ -14,7 +14,7 @@ struct VignetteUniforms {
 
 @group(0) @binding(0) var<uniform> vignetting: VignetteUniforms;
 
-/// Scene-referred linear light as it comes through the lens; alpha stays.
+/// Applies the vignette to scene-referred linear light; alpha is unchanged.
 fn vignette(color: vec4<f32>, pixel: vec2<f32>) -> vec4<f32> {
     let radius = (pixel - vignetting.centre_px) * vignetting.per_corner_px;
     let share = vignette_transmittance(dot(radius, radius), vignetting.falloff);

@@ -1,7 +1,7 @@
-// Ambient occlusion of the picture, as the color pass reads it: made by pass/occlusion.wgsl.
+// Screen-space ambient occlusion as the color pass reads it; written by pass/occlusion.wgsl.
 //
-// Feature AMBIENT_OCCLUSION: there is such a picture, a texel a pixel. OCCLUSION_UPSAMPLED: there
-// is one that is smaller, and the structure tells which of its texels belong to a surface.
+// AMBIENT_OCCLUSION: the texture has full resolution. OCCLUSION_UPSAMPLED: it has lower resolution
+// and is upsampled with the depth pyramid, which separates surfaces.
 
 @if(OCCLUSION_UPSAMPLED)
 import package::interface::frame::frame;
@@ -12,26 +12,27 @@ import package::lib::bilateral::bilateral_weight;
 @if(OCCLUSION_UPSAMPLED)
 import package::lib::unproject::view_z;
 
-/// The picture has the mean open direction, too: reflections are occluded by the cone about it.
+/// The texture also holds the mean open direction, whose cone occludes reflections.
 override BENT_NORMALS: bool = false;
 
-/// Visibility in red, and the mean open direction in world space in the other channels; loaded.
+/// Visibility in red, and the mean open direction in world space in the other channels; read
+/// without filtering.
 @if(AMBIENT_OCCLUSION || OCCLUSION_UPSAMPLED)
 @group(0) @binding(21) var ambient_occlusion: texture_2d<f32>;
 
-/// Distance between surfaces in m, from which on a texel of one does not count for the other.
+/// Distance between surfaces in m at which the weight of a texel reaches zero.
 @if(OCCLUSION_UPSAMPLED)
 const UPSAMPLED_THRESHOLD_M: f32 = 0.05;
 
-/// What the picture has for a fragment: `position` as in @builtin(position), and how its depth
-/// changes from pixel to pixel.
+/// Returns the screen-space occlusion of a fragment, from `position` as in @builtin(position) and
+/// the screen derivatives of its depth.
 @if(AMBIENT_OCCLUSION && !OCCLUSION_UPSAMPLED)
 fn screen_occlusion(position: vec4<f32>, depth_slope: vec2<f32>) -> vec4<f32> {
     return textureLoad(ambient_occlusion, vec2<i32>(position.xy), 0);
 }
 
-/// The four texels about the fragment, bilinearly, each by how near its surface is to the plane of
-/// the fragment; all of them where none is near.
+/// Returns the four nearest texels with bilinear weights times the nearness of their surfaces to
+/// the fragment's plane. If no surface is near, the weights are only bilinear.
 @if(OCCLUSION_UPSAMPLED)
 fn screen_occlusion(position: vec4<f32>, depth_slope: vec2<f32>) -> vec4<f32> {
     let m = frame.clip_from_world;

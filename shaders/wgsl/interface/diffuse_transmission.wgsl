@@ -1,14 +1,13 @@
-// Light that is scattered through a surface (KHR_materials_diffuse_transmission): its textures and
-// what they say.
+// Diffuse transmission of a material (KHR_materials_diffuse_transmission): textures and lookups.
 //
-// Read by the color pass under DIFFUSE_TRANSMISSION.
+// Used by the color pass with DIFFUSE_TRANSMISSION.
 
 @if(DIFFUSE_TRANSMISSION)
 import package::interface::material::{
     SLOT_DIFFUSE_TRANSMISSION, SLOT_DIFFUSE_TRANSMISSION_COLOR, material, material_has, map_uv,
 };
 
-/// Share of the scattered light that leaves on the other side in alpha; linear.
+/// Share of the scattered light that leaves through the back, in alpha; linear.
 @if(DIFFUSE_TRANSMISSION)
 @group(1) @binding(35) var diffuse_transmission_texture: texture_2d<f32>;
 @if(DIFFUSE_TRANSMISSION)
@@ -19,8 +18,8 @@ import package::interface::material::{
 @if(DIFFUSE_TRANSMISSION)
 @group(1) @binding(38) var diffuse_transmission_color_sampler: sampler;
 
-/// Albedo of the light that leaves on the other side, linear Rec.709, and in w its share of the
-/// scattered light, 0…1.
+/// Returns the albedo of the light that leaves through the back, linear Rec.709, and in w its share
+/// of the scattered light, 0…1.
 @if(DIFFUSE_TRANSMISSION)
 fn diffuse_transmission(uv: vec4<f32>) -> vec4<f32> {
     let given = material.diffuse_transmission;

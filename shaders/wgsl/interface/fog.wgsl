@@ -1,4 +1,4 @@
-// Fog in front of what is shaded: read by the color passes and the sky under FOG.
+// Fog in front of surfaces and sky; used by the color passes and the sky with FOG.
 
 import package::interface::environment::environment_level;
 import package::interface::frame::frame;
@@ -6,37 +6,36 @@ import package::lib::environment::rotate_about_y;
 import package::lib::fog::{fog_optical_depth, fog_opacity, fog_glow};
 import package::lib::numerics::saturate_half3;
 
-/// How far away what no surface covers is taken to be, in m.
+/// Distance of the sky, in m.
 const FOG_SKY_M: f32 = 1e10;
 
-/// The fog of a view. Mirrored by `layout::FogUniforms`.
+/// Fog of a view. Mirrored by `layout::FogUniforms`.
 struct FogUniforms {
-    /// Pre-exposed radiance, linear Rec.709; or a tint of the environment's.
+    /// Pre-exposed radiance, linear Rec.709; a tint if `of_environment` is 1.
     color: vec3<f32>,
     /// Density at the eye, in 1/m.
     density: f32,
-    /// How fast density falls with height, in 1/m.
+    /// Height falloff of the density, in 1/m.
     falloff: f32,
-    /// Where fog begins, in m from the eye.
+    /// Distance from the eye at which fog begins, in m.
     start_m: f32,
-    /// What is farther away is not in fog.
+    /// Distance beyond which surfaces have no fog, in m.
     cut_off_m: f32,
-    /// The most that it hides, 0…1.
+    /// Maximum opacity, 0…1.
     most_opacity: f32,
-    /// Where the sun's light begins to be scattered, in m from the eye.
+    /// Distance from the eye at which in-scattering of sunlight begins, in m.
     glow_start_m: f32,
-    /// Exponent of the glow about the sun.
+    /// Exponent of the sun's glow.
     glow_size: f32,
-    /// 1: there is a glow. 0: there is none.
+    /// 1: adds the sun's glow. 0: no glow.
     glows: f32,
-    /// 1: density where fog begins counts. 0: as Filament has it.
+    /// 1: uses the density where fog begins. 0: as in Filament.
     exact: f32,
-    /// 1: the color is the environment's. 0: it is not.
+    /// 1: takes the color from the environment. 0: uses `color` alone.
     of_environment: f32,
-    /// One over the distance from which on the environment is blurred less by `sharp_levels`, in
-    /// 1/m.
+    /// Reciprocal of the distance at which the environment is `sharp_levels` sharper, in 1/m.
     per_sharp_m: f32,
-    /// Levels by which it is blurred less from that distance on.
+    /// Number of mip levels by which the environment gets sharper with distance.
     sharp_levels: f32,
 }
 
@@ -44,8 +43,7 @@ struct FogUniforms {
 /// driver corrupts its memory for branches on a fourth uniform buffer (tests/all/branches.rs).
 @group(0) @binding(46) var<uniform> fog: FogUniforms;
 
-/// A color, multiplied by its alpha, as it is seen through `way_m` of fog along the unit vector
-/// `direction`.
+/// Returns a premultiplied color behind `way_m` of fog along the unit vector `direction`.
 fn in_fog(color: vec4<f32>, direction: vec3<f32>, way_m: f32) -> vec4<f32> {
     let decay = fog.falloff * direction.y * way_m;
     let depth = fog_optical_depth(fog.density, decay, fog.start_m, way_m, fog.exact);

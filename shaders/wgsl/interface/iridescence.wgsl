@@ -1,13 +1,13 @@
-// The thin film of a material (KHR_materials_iridescence): its textures and what they say.
+// Thin film of a material (KHR_materials_iridescence): textures and lookups.
 //
-// Read by the color pass under IRIDESCENCE.
+// Used by the color pass with IRIDESCENCE.
 
 @if(IRIDESCENCE)
 import package::interface::material::{
     SLOT_IRIDESCENCE, SLOT_IRIDESCENCE_THICKNESS, material, material_has, map_uv,
 };
 
-/// Share of the surface under the film in red; linear.
+/// Coverage of the surface by the film in red; linear.
 @if(IRIDESCENCE)
 @group(1) @binding(31) var iridescence_texture: texture_2d<f32>;
 @if(IRIDESCENCE)
@@ -18,7 +18,7 @@ import package::interface::material::{
 @if(IRIDESCENCE)
 @group(1) @binding(34) var iridescence_thickness_sampler: sampler;
 
-/// Share of the surface under the film in x, 0…1, and the film's thickness in nm in y.
+/// Returns the coverage by the film in x, 0…1, and the film's thickness in nm in y.
 @if(IRIDESCENCE)
 fn iridescence(uv: vec4<f32>) -> vec2<f32> {
     let film = material.iridescence;

@@ -1,11 +1,11 @@
 // Group 1: a glTF metallic-roughness material, its lobes, and their textures.
 //
-// Slot i of `Material::slots` binds its texture at 1 + 2i and its sampler at 2 + 2i. The textures
-// of a lobe are there only under its feature; those of the film and of diffuse transmission are in
-// files of their own.
+// Slot i of `Material::slots` binds its texture at 1 + 2i and its sampler at 2 + 2i. Textures of a
+// lobe exist only with its feature; those of iridescence and diffuse transmission have their own
+// files.
 //
-// Under MATERIAL_TABLE the factors are copied from an array, before anything reads them: who draws
-// many materials binds no group for each.
+// With MATERIAL_TABLE, the factors are copied from an array before use, so draws need no bind group
+// per material.
 
 import package::interface::material_uniforms::{MaterialUniforms, TextureMap};
 import package::lib::normal_map::unpack_normal;
@@ -83,9 +83,9 @@ var<private> material: MaterialUniforms;
 @if(SPECULAR)
 @group(1) @binding(30) var specular_color_sampler: sampler;
 
-/// What the material has, a bit for each SLOT_* (textures, as in `Material::slots`) and TRAIT_*.
-/// What it lacks is no part of the shader: where branches are not skipped, as in some software, it
-/// would be computed.
+/// Traits of the material: one bit for each SLOT_* (textures, as in `Material::slots`) and TRAIT_*.
+/// Code of absent traits is removed from the shader, because some software drivers do not skip
+/// branches.
 override MATERIAL_TRAITS: u32 = (1u << TRAIT_UNLIT) - 1u;
 
 const SLOT_BASE_COLOR: u32 = 0u;
@@ -107,31 +107,31 @@ const SLOT_IRIDESCENCE: u32 = 15u;
 const SLOT_IRIDESCENCE_THICKNESS: u32 = 16u;
 const SLOT_DIFFUSE_TRANSMISSION: u32 = 17u;
 const SLOT_DIFFUSE_TRANSMISSION_COLOR: u32 = 18u;
-/// Number of slots; the bits of traits follow theirs.
+/// Number of texture slots; the bits of traits follow them.
 const SLOT_COUNT: u32 = 19u;
-/// It emits light.
+/// The material emits light.
 const TRAIT_EMITS: u32 = SLOT_COUNT + 0u;
 /// Back faces are drawn and shaded with reversed normals.
 const TRAIT_DOUBLE_SIDED: u32 = SLOT_COUNT + 1u;
-/// The base color is shown as it is (KHR_materials_unlit).
+/// The material is unlit: the base color is shown as it is (KHR_materials_unlit).
 const TRAIT_UNLIT: u32 = SLOT_COUNT + 2u;
-/// Every texture is looked up by set 0 as it is.
+/// All textures use texture coordinate set 0 without a transform.
 const TRAIT_PLAIN_UV: u32 = SLOT_COUNT + 3u;
-/// Occlusion is in red of the metallic-roughness texture, which is read once for both.
+/// Occlusion is the red channel of the metallic-roughness texture, which is sampled once for both.
 const TRAIT_PACKED_OCCLUSION: u32 = SLOT_COUNT + 4u;
-/// The mesh is of lines or points.
+/// The mesh consists of lines or points.
 const TRAIT_NO_AREA: u32 = SLOT_COUNT + 5u;
 /// The base under the clear coat keeps its reflectance in air.
 const TRAIT_COAT_KEEPS_F0: u32 = SLOT_COUNT + 6u;
-/// The surface is seen where the sun is in shadow alone.
+/// The surface is a shadow catcher, visible only where the sun is in shadow.
 const TRAIT_SHADOW_CATCHER: u32 = SLOT_COUNT + 7u;
 
-/// Whether the material has the texture of a slot, or a trait.
+/// Returns true if the material has the texture of a slot, or a trait.
 fn material_has(what: u32) -> bool {
     return (MATERIAL_TRAITS & (1u << what)) != 0u;
 }
 
-/// Texture coordinates of a map; `uv` holds set 0 in xy and set 1 in zw.
+/// Returns the texture coordinates of a map; `uv` holds set 0 in xy and set 1 in zw.
 fn map_uv(map: TextureMap, uv: vec4<f32>) -> vec2<f32> {
     if material_has(TRAIT_PLAIN_UV) {
         return uv.xy;
@@ -140,7 +140,7 @@ fn map_uv(map: TextureMap, uv: vec4<f32>) -> vec2<f32> {
     return transform_uv(chosen, map.x_axis, map.y_axis, map.offset);
 }
 
-/// Linear base color with straight alpha: factor, texture and vertex color multiplied.
+/// Returns the linear base color with straight alpha: factor, texture and vertex color multiplied.
 fn base_color(uv: vec4<f32>, vertex_color: vec4<f32>) -> vec4<f32> {
     var color = material.base_color * vertex_color;
     if material_has(SLOT_BASE_COLOR) {
@@ -150,7 +150,7 @@ fn base_color(uv: vec4<f32>, vertex_color: vec4<f32>) -> vec4<f32> {
     return color;
 }
 
-/// Metalness in x and perceptual roughness in y.
+/// Returns metalness in x and perceptual roughness in y.
 fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
     var values = vec2<f32>(material.metallic, material.roughness);
     if material_has(SLOT_METALLIC_ROUGHNESS) {
@@ -160,7 +160,7 @@ fn metallic_roughness(uv: vec4<f32>) -> vec2<f32> {
     return values;
 }
 
-/// Visibility of the ambient light from the occlusion texture, 0…1: 1 is unoccluded.
+/// Returns the visibility of ambient light from the occlusion texture, 0…1.
 fn occlusion(uv: vec4<f32>) -> f32 {
     if !material_has(SLOT_OCCLUSION) {
         return 1.0;
@@ -176,7 +176,7 @@ fn occlusion(uv: vec4<f32>) -> f32 {
     return 1.0 + material.occlusion_strength * (texel - 1.0);
 }
 
-/// Emitted radiance before exposure.
+/// Returns the emitted radiance before exposure.
 fn emission(uv: vec4<f32>) -> vec3<f32> {
     var color = material.emissive;
     if material_has(SLOT_EMISSIVE) {
@@ -186,7 +186,7 @@ fn emission(uv: vec4<f32>) -> vec3<f32> {
     return color;
 }
 
-/// Coverage by the coat in x, 0…1, and perceptual roughness of the coat in y.
+/// Returns the coverage by the coat in x, 0…1, and perceptual roughness of the coat in y.
 @if(CLEAR_COAT)
 fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
     let coat = material.clear_coat;
@@ -201,8 +201,8 @@ fn clear_coat(uv: vec4<f32>) -> vec2<f32> {
     return values;
 }
 
-/// Tangent-space normal of the coat, not normalized: straight up without a map of its own, for
-/// the coat does not follow the base's.
+/// Returns the tangent-space normal of the coat, not normalized. Without its own map it is (0, 0,
+/// 1), because the coat does not follow the base's normal map.
 @if(CLEAR_COAT)
 fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
     let coat = material.clear_coat;
@@ -214,7 +214,7 @@ fn clear_coat_tangent_normal(uv: vec4<f32>) -> vec3<f32> {
     return unpack_normal(texel, coat.normal_scale);
 }
 
-/// Reflectance of the sheen lobe, linear Rec.709, and its perceptual roughness in w.
+/// Returns the reflectance of the sheen lobe, linear Rec.709, and its perceptual roughness in w.
 @if(SHEEN)
 fn sheen(uv: vec4<f32>) -> vec4<f32> {
     let given = material.sheen;
@@ -231,8 +231,8 @@ fn sheen(uv: vec4<f32>) -> vec4<f32> {
     return values;
 }
 
-/// Direction of anisotropy as (tangent, bitangent) components in xy, of unit length, and the
-/// strength of the anisotropy in z, 0…1.
+/// Returns the unit direction of anisotropy as (tangent, bitangent) components in xy, and the
+/// strength in z, 0…1.
 @if(ANISOTROPY)
 fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
     let given = material.anisotropy;
@@ -243,8 +243,8 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
         let texel = textureSample(anisotropy_texture, anisotropy_sampler, at).xyz;
         strength *= texel.z;
         let stored = texel.xy * 2.0 - 1.0;
-        // Within a code of the middle, as averages over opposite directions are, no direction is
-        // meant.
+        // Values within an 8-bit step of the middle, such as averages of opposite directions,
+        // encode no direction.
         if dot(stored, stored) > 1e-4 {
             direction = normalize(stored);
         }
@@ -257,7 +257,7 @@ fn anisotropy(uv: vec4<f32>) -> vec3<f32> {
     return vec3<f32>(turned, strength);
 }
 
-/// Transmission, 0…1.
+/// Returns the transmission, 0…1.
 @if(TRANSMISSION)
 fn transmission(uv: vec4<f32>) -> f32 {
     var factor = material.transmission.factor;
@@ -268,7 +268,7 @@ fn transmission(uv: vec4<f32>) -> f32 {
     return factor;
 }
 
-/// Thickness of the volume under the surface in units of the mesh: 0 is a thin wall.
+/// Returns the thickness of the volume in units of the mesh; 0 is a thin wall.
 @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
 fn volume_thickness(uv: vec4<f32>) -> f32 {
     var thickness = material.transmission.thickness;
@@ -279,8 +279,8 @@ fn volume_thickness(uv: vec4<f32>) -> f32 {
     return thickness;
 }
 
-/// Reflectance of the dielectric part at normal incidence in rgb, at grazing incidence in w
-/// (KHR_materials_specular): the tint is held at full reflection, the factor weakens both.
+/// Returns the dielectric reflectance at normal incidence in rgb and at grazing incidence in w
+/// (KHR_materials_specular). The tint is limited to full reflection; the factor scales both.
 @if(SPECULAR)
 fn specular_factors(uv: vec4<f32>) -> vec4<f32> {
     let given = material.specular;

@@ -73,13 +73,13 @@ struct SpecularUniforms {
 
 /// Thin film (KHR_materials_iridescence). Mirrored by `layout::IridescenceUniforms`.
 struct IridescenceUniforms {
-    /// Share of the surface under the film, 0…1.
+    /// Coverage of the surface by the film, 0…1.
     factor: f32,
     /// Index of refraction of the film, 1 or more.
     ior: f32,
-    /// Thickness in nm where its texture is 0.
+    /// Film thickness in nm at texture value 0.
     min_thickness_nm: f32,
-    /// Thickness in nm where its texture is 1, and without one.
+    /// Film thickness in nm at texture value 1, or without a texture.
     max_thickness_nm: f32,
     map: TextureMap,
     thickness_map: TextureMap,
@@ -88,24 +88,24 @@ struct IridescenceUniforms {
 /// Diffuse transmission (KHR_materials_diffuse_transmission). Mirrored by
 /// `layout::DiffuseTransmissionUniforms`.
 struct DiffuseTransmissionUniforms {
-    /// Albedo of the light that leaves on the other side, linear Rec.709.
+    /// Albedo of the light that leaves through the back, linear Rec.709.
     color: vec3<f32>,
-    /// Share of the scattered light that leaves on the other side, 0…1.
+    /// Share of the scattered light that leaves through the back, 0…1.
     factor: f32,
     map: TextureMap,
     color_map: TextureMap,
 }
 
-/// Light scattered below the surface (Filament's shading models `subsurface` and `cloth`).
-/// Mirrored by `layout::SubsurfaceUniforms`.
+/// Subsurface scattering (Filament's shading models `subsurface` and `cloth`). Mirrored by
+/// `layout::SubsurfaceUniforms`.
 struct SubsurfaceUniforms {
     /// Color of the scattered light, linear Rec.709, 0…1.
     color: vec3<f32>,
     /// Exponent of the lobe toward lights behind the surface, 0 or more.
     power: f32,
-    /// Color of light that is scattered in cloth, linear Rec.709, 0…1.
+    /// Subsurface color of cloth, linear Rec.709, 0…1.
     cloth_color: vec3<f32>,
-    /// Thickness, from 0 for none to 1, through which nothing passes.
+    /// Thickness, from 0 for thin to 1 for opaque.
     thickness: f32,
 }
 
@@ -115,8 +115,8 @@ struct MaterialUniforms {
     base_color: vec4<f32>,
     /// Emitted radiance, linear Rec.709, emissive strength included.
     emissive: vec3<f32>,
-    /// 1 if `emissive` is in nits and meets the exposure, 0 if it is a display value, as in most
-    /// assets.
+    /// 1: `emissive` is in nits and is multiplied by the exposure. 0: it is a display value, as in
+    /// most assets.
     emissive_exposure_weight: f32,
     /// 0 dielectric … 1 metal.
     metallic: f32,
@@ -126,11 +126,11 @@ struct MaterialUniforms {
     normal_scale: f32,
     /// Strength of the occlusion texture, 0…1.
     occlusion_strength: f32,
-    /// Alpha mode MASK: fragments with less alpha are discarded.
+    /// Alpha threshold of mode MASK: fragments with lower alpha are discarded.
     alpha_cutoff: f32,
     /// Reflectance of the dielectric part at normal incidence; 0.04 for an index of 1.5.
     dielectric_f0: f32,
-    /// Strength of the shadow that a shadow catcher shows, 0…1.
+    /// Strength of the shadow on a shadow catcher, 0…1.
     @size(8) catcher_strength: f32,
     base_color_map: TextureMap,
     metallic_roughness_map: TextureMap,

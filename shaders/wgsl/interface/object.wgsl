@@ -1,44 +1,42 @@
-// Objects: where they are and how they are turned. Draws are instanced; the third vertex stream is
-// of instances. It brings the number of the object, an element of the buffers of group 2; or, under
-// INSTANCE_STREAM, all there is to know of the object. Mesa's software driver loads from buffers
-// vertex by vertex, and from such a stream once.
+// Transforms of objects. Draws are instanced, and the third vertex stream is per instance. It holds
+// the object's index in the buffers of group 2 or, with INSTANCE_STREAM, all attributes of the
+// object. Mesa's software driver reads buffers per vertex, but this stream once.
 
 import package::interface::frame::frame;
 import package::lib::numerics::normalize_or;
 
-/// Placement of an object. Mirrored by `layout::ObjectUniforms`, which fills it.
+/// Transform of an object. Mirrored by `layout::ObjectUniforms`.
 struct ObjectUniforms {
-    /// Model to world space, without the translation, which depends on the eye: its last column is
+    /// Model-to-world matrix without the translation, which depends on the eye: its last column is
     /// that of the identity.
     world_from_model: mat4x4<f32>,
-    /// Columns of the matrix that carries normals: cofactors of the upper 3×3, scaled to a
-    /// largest entry of one, times the sign of the determinant. Cofactors exist where the
-    /// inverse does not (hard case 38).
+    /// Columns of the normal matrix: cofactors of the upper 3×3, scaled to a largest entry of one,
+    /// times the sign of the determinant. Cofactors exist even without an inverse (hard case 38).
     normal_column_x: vec3<f32>,
     /// Sign of the determinant, ±1: -1 for mirrored objects.
     handedness: f32,
     normal_column_y: vec3<f32>,
-    /// Number of its material.
+    /// Index of its material.
     material: u32,
     normal_column_z: vec3<f32>,
 }
 
 @if(!INSTANCE_STREAM)
 @group(2) @binding(0) var<storage, read> objects: array<ObjectUniforms>;
-/// Where the zero point of each object's mesh is, in m; xyz.
+/// Origin of each object's mesh, in m; xyz.
 @if(!INSTANCE_STREAM)
 @group(2) @binding(1) var<storage, read> origins: array<vec4<f32>>;
 
-/// An object as its draw brings it: the attributes of `layout::OBJECT_ATTRIBUTES`.
+/// Attributes of an object in a draw, as in `layout::OBJECT_ATTRIBUTES`.
 @if(INSTANCE_STREAM)
 struct Instance {
     @location(6) number: u32,
-    /// Columns of the matrix from model to world space, in m.
+    /// Columns of the model-to-world matrix, in m.
     @location(8) column_x: vec4<f32>,
     @location(9) column_y: vec4<f32>,
     @location(10) column_z: vec4<f32>,
     @location(11) origin: vec4<f32>,
-    /// Columns of the normal matrix; the first with the sign of the determinant.
+    /// Columns of the normal matrix; w of the first is the sign of the determinant.
     @location(12) normal_column_x: vec4<f32>,
     @location(13) normal_column_y: vec3<f32>,
     @location(14) normal_column_z: vec3<f32>,
@@ -50,7 +48,7 @@ struct Instance {
     @location(6) number: u32,
 }
 
-/// Model to world space, in m.
+/// Returns the model-to-world matrix, in m.
 @if(INSTANCE_STREAM)
 fn world_from_model(instance: Instance) -> mat4x4<f32> {
     return mat4x4<f32>(
@@ -66,7 +64,7 @@ fn world_from_model(instance: Instance) -> mat4x4<f32> {
     return mat4x4<f32>(turned[0], turned[1], turned[2], origin);
 }
 
-/// The matrix that carries normals.
+/// Returns the normal matrix.
 @if(INSTANCE_STREAM)
 fn normal_matrix(instance: Instance) -> mat3x3<f32> {
     return mat3x3<f32>(
@@ -83,7 +81,7 @@ fn normal_matrix(instance: Instance) -> mat3x3<f32> {
     );
 }
 
-/// Sign of the determinant, ±1: -1 for mirrored objects.
+/// Returns the sign of the determinant, ±1: -1 for mirrored objects.
 @if(INSTANCE_STREAM)
 fn handedness(instance: Instance) -> f32 {
     return instance.normal_column_x.w;
@@ -94,7 +92,7 @@ fn handedness(instance: Instance) -> f32 {
     return objects[instance.number].handedness;
 }
 
-/// Number of the object's material.
+/// Returns the index of the object's material.
 @if(INSTANCE_STREAM)
 fn material_number(instance: Instance) -> u32 {
     return instance.material;
@@ -105,33 +103,32 @@ fn material_number(instance: Instance) -> u32 {
     return objects[instance.number].material;
 }
 
-/// World position in m of a model position.
+/// Returns the world position in m of a model position.
 fn world_position(position: vec3<f32>, instance: Instance) -> vec3<f32> {
     return (world_from_model(instance) * vec4<f32>(position, 1.0)).xyz;
 }
 
-/// Clip position of a world position. The depth prepass and the color pass must agree to the
-/// bit, or an Equal depth test punches holes: both go through here and both mark their output
-/// @invariant.
+/// Returns the clip position of a world position. Depth prepass and color pass must agree to the
+/// bit, because the depth test is Equal. Both use this function and mark their output @invariant.
 fn clip_position(world: vec3<f32>) -> vec4<f32> {
     return frame.clip_from_world * vec4<f32>(world, 1.0);
 }
 
-/// World-space unit normal of a model normal, or zero where the transform flattens it away;
-/// the fragment stage then falls back to the triangle's own normal.
+/// Returns the world-space unit normal of a model normal. It is zero if the transform flattens it;
+/// the fragment stage then uses the geometric normal.
 fn world_normal(normal: vec3<f32>, instance: Instance) -> vec3<f32> {
     let m = normal_matrix(instance);
     let n = m[0] * normal.x + m[1] * normal.y + m[2] * normal.z;
     return normalize_or(n, vec3<f32>(0.0));
 }
 
-/// Meters that a unit of the mesh becomes, the mean over its axes.
+/// Returns the length of a mesh unit in m, averaged over the axes.
 fn mesh_scale_m(instance: Instance) -> f32 {
     let m = world_from_model(instance);
     return (length(m[0].xyz) + length(m[1].xyz) + length(m[2].xyz)) / 3.0;
 }
 
-/// World-space unit tangent of a model tangent, or zero where there is none.
+/// Returns the world-space unit tangent of a model tangent, or zero without one.
 fn world_tangent(tangent: vec3<f32>, instance: Instance) -> vec3<f32> {
     let m = world_from_model(instance);
     let t = m[0].xyz * tangent.x + m[1].xyz * tangent.y + m[2].xyz * tangent.z;

@@ -1,40 +1,39 @@
-// What lies behind transmissive surfaces: the picture of everything opaque, as a pyramid.
+// The opaque scene behind refractive surfaces, as a pyramid.
 //
-// Made by pass/scene.wgsl; read by the color pass under TRANSMISSION.
+// Written by pass/scene.wgsl; read by the color pass with TRANSMISSION.
 
 import package::interface::frame::frame;
 import package::lib::fullscreen::uv_from_clip;
 import package::lib::refraction::pyramid_lod;
 
-/// Pre-exposed radiance in rgb; in a the distance in m from the eye's plane, at most 65504.
+/// Pre-exposed radiance in rgb; distance from the eye's plane in m in a, at most 65504.
 @group(0) @binding(12) var scene_levels: texture_2d<f32>;
 /// Trilinear filter, clamp to edge.
 @group(0) @binding(13) var scene_sampler: sampler;
 
-/// Distance of a point from the plane through the eye, in m.
+/// Returns the distance of a point from the plane through the eye, in m.
 fn distance_ahead(world: vec3<f32>) -> f32 {
     return -dot(frame.world_from_view[2].xyz, world);
 }
 
-/// Texture coordinates of a point in the picture.
+/// Returns the screen texture coordinates of a point.
 fn screen_uv(world: vec3<f32>) -> vec2<f32> {
     let clip = frame.clip_from_world * vec4<f32>(world, 1.0);
     return uv_from_clip(clip.xy / max(clip.w, 1e-6));
 }
 
-/// Pixels that a meter spans upright at this distance ahead.
+/// Returns the number of vertical pixels per meter at this distance.
 fn pixels_per_m(distance_m: f32) -> f32 {
     let m = frame.clip_from_world;
     let per_m = 0.5 * frame.viewport_size_px.y * length(vec3<f32>(m[0].y, m[1].y, m[2].y));
-    // A parallel projection shows everything in one size.
+    // Orthographic projections have the same scale at all distances.
     return per_m / select(1.0, max(distance_m, 1e-6), frame.camera.w != 0.0);
 }
 
-/// Pre-exposed radiance of the scene behind a body, where the ray that entered at `world` leaves
-/// the body of index `ior` after `path`. It is blurred by the light's spread in radians: over the
-/// way from there to the thing seen (x), and from the eye (y). Within the body the spread is that
-/// in air over the index. The picture has no other side: where it shows something in front of the
-/// surface, the ray is taken to go straight on.
+/// Returns pre-exposed radiance behind a refractive object. The ray entered at `world` and leaves
+/// the object of index `ior` after `path`. `spread` is an angle in radians: x is applied over the
+/// distance from the exit point, y from the eye. Inside the object the spread is divided by the
+/// index. If the image shows a surface in front of the object, the ray continues straight.
 fn radiance_behind(
     world: vec3<f32>,
     path: vec3<f32>,

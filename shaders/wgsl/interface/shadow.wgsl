@@ -1,66 +1,66 @@
-// Group 0: shadow maps of the sun, a layer each of one texture, and of local lights, which share
-// layers of it.
+// Group 0: shadow maps of the sun, one texture layer per cascade, and of punctual lights, which
+// share layers of this texture.
 //
-// A pass binds only those that its shader reaches: depth, or moments.
+// A pass binds only the resources that its shader uses: depth or moments.
 
-/// One map. Mirrored by `layout::ShadowMapUniforms`.
+/// Shadow map. Mirrored by `layout::ShadowMapUniforms`.
 struct ShadowMapUniforms {
-    /// World to the light's clip space, reversed-Z.
+    /// World to light clip space, reversed-Z.
     clip_from_world: mat4x4<f32>,
-    /// World to depth away from the light: 0 at the near end of the map, 1 at the far end.
+    /// World to linear depth: 0 at the near end of the map, 1 at the far end.
     linear_depth: vec4<f32>,
-    /// Across the map, as long in m as receivers are offset along a normal that points there,
-    /// where w = 1; it grows as texels do.
+    /// Right axis of the map. Its length is the normal offset, in m where w = 1, for normals in
+    /// this direction; it grows with the texel size.
     right: vec3<f32>,
-    /// World size of a texel across in m where w = 1; it grows with w.
+    /// World width of a texel, in m where w = 1; proportional to w.
     texel_right_m: f32,
-    /// The same up the map.
+    /// Up axis of the map, with the normal offset as its length, like `right`.
     up: vec3<f32>,
-    /// World size of a texel up the map; it grows with w, of a warped map with w².
+    /// World height of a texel; proportional to w, or to w² in a warped map.
     texel_up_m: f32,
-    /// Meters that a depth of 1 spans where w = 1; of a parallel light.
+    /// Depth range of a parallel light's map in m, where w = 1.
     depth_m: f32,
-    /// near / (far - near) of a perspective map; 0 of a parallel light.
+    /// near / (far - near) of a perspective map; 0 for parallel lights.
     near_over_range: f32,
-    /// Radius of the light's bulb in m; 0: the light is a disc at infinity.
+    /// Radius of the light source in m; 0 for a disc at infinity.
     bulb_m: f32,
-    /// Tangent of the angular radius of that disc.
+    /// Tangent of the angular radius of a light source at infinity.
     tan_radius: f32,
-    /// Top left of the map in its layer, in texture coordinates.
+    /// Top left corner of the map in its layer, in texture coordinates.
     uv_corner: vec2<f32>,
-    /// Part of the layer's width and height that the map takes.
+    /// Size of the map as a share of the layer's width and height.
     uv_scale: f32,
-    /// Number of the last level of moments that is the map's own.
+    /// Last mip level of moments that belongs to this map alone.
     last_level: f32,
-    /// Which layer.
+    /// Index of the layer.
     layer: u32,
-    /// Not 0: the map's perspective follows the camera's.
+    /// Nonzero if the map's perspective is warped to the camera's.
     warped: u32,
 }
 
-/// What is the same for all maps of a view, and the maps of the sun. Mirrored by
-/// `layout::ShadowUniforms`.
+/// Shadow settings of a view, and the sun's shadow maps. Mirrored by `layout::ShadowUniforms`.
 struct ShadowUniforms {
     /// Distance ahead of the eye in m at which each cascade of the sun ends.
     far_ends: vec4<f32>,
-    /// How penumbrae are found: SHADOW_FILTER_DPCF or SHADOW_FILTER_PCSS; 0 where there are none.
+    /// Filter of soft shadows: SHADOW_FILTER_DPCF or SHADOW_FILTER_PCSS; 0 without penumbrae.
     filter_kind: u32,
     /// Width and height of a layer in texels.
     texels: f32,
-    /// 1/m² of the distance by which the sun's shadows have faded; 0: they do not fade.
+    /// Reciprocal of the squared distance at which the sun's shadows have faded out, in 1/m²; 0 for
+    /// no fade.
     inv_far2: f32,
-    /// Exponent of the warp of moments.
+    /// Exponent of the depth warp for moments.
     exponent: f32,
-    /// Least variance of warped depth, over its square.
+    /// Minimum variance of warped depth, divided by its square.
     variance_floor: f32,
-    /// Share of light that is taken for bled and removed, 0…1.
+    /// Amount of light bleeding reduction, 0…1.
     bleed: f32,
     /// Length of a contact shadow's ray in m.
     contact_m: f32,
-    /// Darkness of the sun's shadows, 0…1.
+    /// Strength of the sun's shadows, 0…1.
     sun_strength: f32,
-    /// Maps of the sun, CASCADES of them, each of which takes the whole layer of its number. Not
-    /// with the others: Mesa's software driver loads from storage fragment by fragment.
+    /// Maps of the sun's CASCADES cascades, each of which fills the layer of its index. Not in
+    /// `local_maps`, because Mesa's software driver loads storage buffers per fragment.
     cascades: array<ShadowMapUniforms, 4>,
 }
 
@@ -68,25 +68,25 @@ struct ShadowUniforms {
 const SHADOW_FILTER_DPCF: u32 = 1u;
 const SHADOW_FILTER_PCSS: u32 = 2u;
 
-/// How many cascades there are.
+/// Number of cascades.
 override CASCADES: u32 = 4u;
-/// Whether the sun's shadows end at a distance, and not where nothing is left to fall on.
+/// Fades the sun's shadows out at a distance.
 override SHADOWS_END: bool = true;
-/// Whether there are maps of local lights.
+/// Enables shadow maps of punctual lights.
 override LAMP_SHADOWS: bool = true;
-/// Whether the shadows of a light are weaker than 1.
+/// True if the shadow strength of some light is below 1.
 override WEAK_SHADOWS: bool = true;
-/// Tint what is lit by the number of its cascade.
+/// Tints surfaces by the index of their cascade.
 override SHOW_CASCADES: bool = false;
 
 @group(0) @binding(30) var<uniform> shadow: ShadowUniforms;
-/// Maps of local lights.
+/// Shadow maps of punctual lights.
 @group(0) @binding(31) var<storage, read> local_maps: array<ShadowMapUniforms>;
 /// Depth, reversed: 1 nearest the light, cleared to 0.
 @group(0) @binding(32) var shadow_map: texture_depth_2d_array;
 /// Linear filter, clamp to edge, compare GreaterEqual.
 @group(0) @binding(33) var shadow_sampler: sampler_comparison;
-/// The same depth, to be read without comparing.
+/// Depth, to be read without comparison.
 @group(0) @binding(34) var shadow_depth: texture_2d_array<f32>;
 /// Moments of warped depth (lib/shadow_moments.wgsl).
 @group(0) @binding(35) var shadow_moments: texture_2d_array<f32>;

@@ -1,40 +1,39 @@
-// The structure of the scene as effects read it: depth as a pyramid, and the places it is of.
+// Depth pyramid of visible surfaces, and the positions of its texels.
 
 import package::lib::depth_normal::continues_ahead;
 import package::lib::depth_pyramid::finest_texel;
 import package::lib::unproject::{Projection, view_position};
 
-/// Reversed depth, all levels or the first; 0 where there is nothing. Loaded as an unfilterable
-/// float.
+/// Reversed depth, all levels or the first; 0 for the background. Bound as an unfilterable float.
 @group(0) @binding(20) var structure: texture_2d<f32>;
 
-/// What a tap met.
+/// Result of a tap.
 struct StructureTap {
-    /// Position in view space, in m; not to be used where nothing is.
+    /// Position in view space, in m; invalid if `hit` is false.
     position: vec3<f32>,
-    /// Something is there.
+    /// True if there is a surface.
     hit: bool,
 }
 
-/// Normalized device coordinates of a point in texels of level 0.
+/// Returns the normalized device coordinates of a point in texels of level 0.
 fn structure_ndc(texels: vec2<f32>) -> vec2<f32> {
     let uv = texels / vec2<f32>(textureDimensions(structure));
     return vec2<f32>(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0);
 }
 
-/// Depth of a texel of level 0; beyond the edge that of the edge (hard case 36).
+/// Returns the depth of a texel of level 0, clamped to the edge (hard case 36).
 fn structure_depth(texel: vec2<i32>) -> f32 {
     let last = vec2<i32>(textureDimensions(structure)) - 1;
     return textureLoad(structure, clamp(texel, vec2<i32>(0), last), 0).r;
 }
 
-/// Position in view space of a texel of level 0 with that depth, which must not be 0.
+/// Returns the view-space position of a texel of level 0 with that depth, which must not be 0.
 fn structure_position(texel: vec2<i32>, depth: f32, projection: Projection) -> vec3<f32> {
     return view_position(structure_ndc(vec2<f32>(texel) + 0.5), depth, projection);
 }
 
-/// What is at a point in texels of level 0, read from `level`. The position is that of the texel
-/// whose depth it is.
+/// Returns the surface at a point in texels of level 0, read from `level`. The position is that of
+/// the texel whose depth was read.
 fn structure_tap(at: vec2<f32>, level: i32, projection: Projection) -> StructureTap {
     let last = vec2<i32>(textureDimensions(structure, level)) - 1;
     let coarse = clamp(vec2<i32>(floor(at / f32(1 << u32(level)))), vec2<i32>(0), last);
@@ -45,8 +44,8 @@ fn structure_tap(at: vec2<f32>, level: i32, projection: Projection) -> Structure
     return StructureTap(structure_position(finest_texel(coarse, level), depth, projection), true);
 }
 
-/// How the surface of a texel of level 0 goes on along an axis: the change of its position, in m,
-/// for a texel along `axis`, taken on the side that belongs to the surface.
+/// Returns the change of a texel's position along `axis`, in m per texel, on the side that
+/// continues the surface.
 fn structure_tangent(
     texel: vec2<i32>,
     axis: vec2<i32>,
@@ -56,7 +55,7 @@ fn structure_tangent(
 ) -> vec3<f32> {
     let back = vec2<f32>(structure_depth(texel - 2 * axis), structure_depth(texel - axis));
     let ahead = vec2<f32>(structure_depth(texel + axis), structure_depth(texel + 2 * axis));
-    // The edge repeats its texel, which continues nothing.
+    // The repeated edge texel does not continue the surface.
     let last = vec2<i32>(textureDimensions(structure)) - 1;
     let at_start = any(texel - axis < vec2<i32>(0));
     let at_end = any(texel + axis > last);

@@ -1,8 +1,8 @@
-// Bilateral blur of ambient occlusion along one axis, which stays on one surface.
+// Bilateral blur of ambient occlusion along one axis, limited to one surface.
 //
-// What tells surfaces apart is the structure's depth in 32 bits, not one packed beside the
-// visibility: 16 bits of a far plane at 10 km are steps of 15 cm. And a texel is compared with
-// where the surface of the middle one leads, so that ground seen at a grazing angle is smoothed
+// Surfaces are distinguished by the 32-bit depth of the depth pyramid. A depth packed next to the
+// visibility would have 16 bits: steps of 15 cm for a far plane at 10 km. Each texel is compared
+// with the extrapolated surface of the center texel. Ground at a grazing angle is therefore blurred
 // as far as a wall.
 
 import package::interface::structure::{structure, structure_depth};
@@ -13,21 +13,21 @@ import package::lib::unproject::view_z;
 
 /// Settings. Mirrored by `layout::BilateralUniforms`.
 struct BilateralUniforms {
-    /// `Projection::depth`.
+    /// Copy of `Projection::depth`.
     depth: vec4<f32>,
-    /// Texels from sample to sample.
+    /// Step between samples, in texels.
     axis: vec2<i32>,
-    /// Distance between surfaces, in m, from which on one does not count for the other.
+    /// Distance between surfaces, in m, at which the weight reaches zero.
     threshold_m: f32,
-    /// Weight of the middle, then of the samples away from it.
+    /// Weight of the center, followed by the weights of samples at increasing distance.
     weights: array<vec4<f32>, 4>,
 }
 
-/// Samples on either side, at most 12.
+/// Number of samples on each side, at most 12.
 override REACH: i32 = 6;
 
 @group(0) @binding(0) var<uniform> bilateral: BilateralUniforms;
-/// Visibility in red; loaded.
+/// Visibility in red; read without filtering.
 @group(0) @binding(1) var occlusion_in: texture_2d<f32>;
 
 @vertex
@@ -35,7 +35,7 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(vertex, 0.0);
 }
 
-/// The slope of stored depth along the axis, on the surface of the middle texel.
+/// Returns the slope of stored depth along the axis, on the surface of the center texel.
 fn slope(texel: vec2<i32>, here: f32) -> f32 {
     let axis = bilateral.axis;
     let back = vec2<f32>(structure_depth(texel - 2 * axis), structure_depth(texel - axis));
@@ -60,7 +60,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         for (var side = -1; side <= 1; side += 2) {
             let at = texel + side * i * bilateral.axis;
             let depth = structure_depth(at);
-            // Where the surface would be: nowhere once its line has passed the far plane.
+            // Extrapolated depth of the surface; invalid once its line has passed the far plane.
             let expected = here + f32(side * i) * step;
             if depth > 0.0 && expected > 0.0 && all(at >= vec2<i32>(0)) && all(at <= last) {
                 let apart = view_z(depth, bilateral.depth) - view_z(expected, bilateral.depth);

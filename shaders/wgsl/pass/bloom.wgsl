@@ -1,10 +1,8 @@
-// Bloom: what glows in a picture, made smaller level by level, and added up again from the
-// smallest.
+// Bloom: extracts bright parts, downsamples them level by level, and adds the levels up again.
 //
-// `fs_first` reads texel by texel, since a filter would spread what is not finite; everything
-// behind it is finite. `fs_down` halves a picture of even sides, `fs_down_odd` any other; `fs_up`
-// adds what comes from below to a level, by a tent of three texels below or, with NARROW, by a box
-// of one.
+// `fs_first` loads texels without filtering, because a filter would spread NaN and infinity; its
+// output is finite. `fs_down` halves images with even sides, `fs_down_odd` all others. `fs_up` adds
+// the next smaller level, filtered by a tent of three texels, or with NARROW by a box of one.
 
 import package::lib::bloom::{
     BLOOM_MOST, tent_weights, firefly_weight, glowing,
@@ -12,33 +10,33 @@ import package::lib::bloom::{
 import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
 import package::lib::numerics::saturate_half3;
 
-/// What glows, and where the picture is. Mirrored by `layout::BloomUniforms`.
+/// Settings of the first bloom pass. Mirrored by `layout::BloomUniforms`.
 struct BloomUniforms {
-    /// Size of what the coordinates span, in texels of the picture.
+    /// Size of the area that the coordinates span, in texels of the source.
     span_px: vec2<f32>,
-    /// Where in it the picture begins, in texels.
+    /// Position of the image in that area, in texels.
     begin_px: vec2<f32>,
-    /// Brightness from which on something glows.
+    /// Brightness threshold of the glow.
     threshold: f32,
     /// See `glowing`.
     hard: f32,
     /// See `glowing`.
     per_highlight: f32,
-    /// 1: only what is above the threshold glows. 0: everything does.
+    /// 1: only texels above the threshold glow. 0: all texels glow.
     thresholds: f32,
-    /// 1: single bright texels count less. 0: they count fully.
+    /// 1: reduces the weight of single bright texels. 0: weights all texels equally.
     @size(16) fireflies: f32,
 }
 
-/// The kernel that levels are added up with.
+/// Adds levels with a box filter instead of a tent.
 override NARROW: bool = false;
 
 @group(0) @binding(0) var<uniform> bloom: BloomUniforms;
-/// Pre-exposed radiance, of one sample per texel; or a level of what glows.
+/// Pre-exposed single-sampled radiance, or a level of the glow.
 @group(0) @binding(1) var glow: texture_2d<f32>;
 /// Linear filter, clamp to edge.
 @group(0) @binding(2) var glow_sampler: sampler;
-/// What glows on this level.
+/// Glow of this level.
 @group(0) @binding(3) var level: texture_2d<f32>;
 
 struct BloomVertex {
@@ -52,14 +50,14 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> BloomVertex {
     return BloomVertex(position, uv_from_clip(position.xy));
 }
 
-/// A texel of the picture, the nearest where there is none; finite.
+/// Returns a texel of the image, clamped to the border; always finite.
 fn texel(at: vec2<i32>) -> vec3<f32> {
     let last = vec2<i32>(textureDimensions(glow, 0)) - 1;
     let color = textureLoad(glow, clamp(at, vec2<i32>(0), last), 0).rgb;
     return min(saturate_half3(color), vec3<f32>(BLOOM_MOST));
 }
 
-/// What glows of the picture: a tent of three texels both ways, in four groups of four texels.
+/// Extracts the glow with a tent of three texels in each direction, in four groups of four texels.
 @fragment
 fn fs_first(vertex: BloomVertex) -> @location(0) vec4<f32> {
     let at = vertex.uv * bloom.span_px - bloom.begin_px + 0.5;
@@ -91,19 +89,19 @@ fn tap(uv: vec2<f32>) -> vec3<f32> {
     return textureSampleLevel(glow, glow_sampler, uv, 0.0).rgb;
 }
 
-/// Four taps at the corners of a square about `uv`.
+/// Sums four taps at the corners of a square around `uv`.
 fn corners(uv: vec2<f32>, d: vec2<f32>) -> vec3<f32> {
     return tap(uv - d) + tap(uv + vec2<f32>(d.x, -d.y))
         + tap(uv + vec2<f32>(-d.x, d.y)) + tap(uv + d);
 }
 
-/// Four taps in the middles of the sides of that square.
+/// Sums four taps at the midpoints of the sides of a square around `uv`.
 fn sides(uv: vec2<f32>, d: vec2<f32>) -> vec3<f32> {
     return tap(uv - vec2<f32>(d.x, 0.0)) + tap(uv + vec2<f32>(d.x, 0.0))
         + tap(uv - vec2<f32>(0.0, d.y)) + tap(uv + vec2<f32>(0.0, d.y));
 }
 
-/// Half the size, of even sides: a kernel of six texels in nine taps.
+/// Halves an image with even sides: a kernel of six texels in nine taps.
 @fragment
 fn fs_down(vertex: BloomVertex) -> @location(0) vec4<f32> {
     let reach = 1.761629 / vec2<f32>(textureDimensions(glow, 0));
@@ -114,7 +112,7 @@ fn fs_down(vertex: BloomVertex) -> @location(0) vec4<f32> {
     return vec4<f32>(color, 1.0);
 }
 
-/// Half the size, of any sides: five boxes of four texels in thirteen taps.
+/// Halves an image of any size: five boxes of four texels in thirteen taps.
 @fragment
 fn fs_down_odd(vertex: BloomVertex) -> @location(0) vec4<f32> {
     let one = 1.0 / vec2<f32>(textureDimensions(glow, 0));
@@ -123,7 +121,7 @@ fn fs_down_odd(vertex: BloomVertex) -> @location(0) vec4<f32> {
     return vec4<f32>(color, 1.0);
 }
 
-/// This level with all that are smaller.
+/// Adds all smaller levels to this level.
 @fragment
 fn fs_up(vertex: BloomVertex) -> @location(0) vec4<f32> {
     let own = textureLoad(level, vec2<i32>(vertex.position.xy), 0).rgb;

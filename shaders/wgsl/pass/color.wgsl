@@ -1,28 +1,9 @@
 // Color pass: glTF metal-rough surfaces lit by the sun, punctual lights and the environment.
 //
-// The shading is Filament's standard model: GGX with height-correlated Smith visibility,
-// Schlick's Fresnel, Lambert, and multiple-scattering compensation from a DFG table. Lights
-// are photometric and arrive pre-exposed; the output is linear Rec.709 radiance times
-// exposure, ready for a half-float target. What a quality preset chooses is in
-// shading/quality.wgsl.
-//
-// The color goes through the epilogue (interface/epilogue.wgsl) before it is written. Blended
-// surfaces that are drawn in any order end with `fs_weighted`, or with `fs_absorbance` and then
-// `fs_moments`.
-//
-// Features: SHADOWS, SHADOW_SOFT or SHADOW_MOMENTS (how shadow maps are read), CONTACT_SHADOWS (a
-// ray through the scene's structure completes them), AMBIENT_OCCLUSION or OCCLUSION_UPSAMPLED (a
-// picture of it is read, interface/ambient_occlusion.wgsl), FROXELS (lights are found by lists),
-// REFLECTIONS (what rays found in the picture, interface/reflection.wgsl), FOG
-// (interface/fog.wgsl), TEXTURED (the material has a texture), VERTEX_COLORS (the mesh has colors),
-// MATERIAL_TABLE (materials lie in an array), INSTANCE_STREAM (interface/object.wgsl),
-// ENVIRONMENT_MAP (lobes read the prefiltered environment; without it they see three bands of
-// spherical harmonics); and the lobes of the material: CLEAR_COAT, SHEEN, ANISOTROPY,
-// TRANSMISSION with DISPERSION, SPECULAR, IRIDESCENCE, DIFFUSE_TRANSMISSION, SUBSURFACE,
-// CLOTH_SUBSURFACE. They change what is bound or comes from the vertices, so they are compiled in
-// or out; what only changes arithmetic is an `override`. HALF shades in half floats: what a surface
-// is made of and what it reflects of one light (lib/real.wgsl). Light itself, and everything that
-// has a place, stays in f32.
+// The shading is Filament's standard model. Lights are photometric; input and output radiance is
+// pre-exposed linear Rec.709. src/feature.rs describes the features; shading/quality.wgsl has the
+// overrides of presets. `fs_main` ends with the epilogue (interface/epilogue.wgsl). With HALF,
+// materials and BRDFs are f16 (lib/real.wgsl); light and positions stay f32.
 
 import package::interface::epilogue::epilogue;
 @if(FOG)
@@ -89,6 +70,7 @@ import package::shading::quality::{
 };
 import package::shading::punctual::add_punctual;
 import package::shading::shadow::{sun_share, sun_visibility, cascade_tint};
+import package::shading::shadow_catcher::caught_shadow;
 import package::shading::shadow_map::Receiver;
 import package::shading::surface::{Surface, layer_transmittance};
 @if(CLEAR_COAT)
@@ -110,16 +92,17 @@ import package::shading::vertex::{
 @if(CLEAR_COAT && TEXTURED)
 import package::shading::vertex::mapped_normal;
 
-/// 0 opaque: alpha is one. 1 mask: fragments below the cutoff are discarded, alpha is one. 2
-/// blend: color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass
-/// masked geometry is drawn as opaque, its holes being in the depth already.
+/// 0 opaque: alpha is one. 1 mask: fragments below the cutoff are discarded, alpha is one. 2 blend:
+/// color is premultiplied by alpha (blend One, OneMinusSrcAlpha). After a prepass, masked geometry
+/// is drawn as opaque, because its holes are already in the depth.
 override ALPHA_MODE: u32 = 0u;
 
-/// Whether there is a sun: without it, it is no part of the shader.
+/// Enables the sun; false removes it from the shader.
 override SUN: bool = true;
 
-/// Whether the material says itself what it reflects at grazing: that is not faded. A constant and
-/// no `@if` around its use, for every variant must have the same overrides.
+/// True if the material specifies its reflectance at grazing incidence, which then does not fade.
+/// This is a constant instead of an `@if` at its use, because all variants must have the same
+/// overrides.
 @if(SPECULAR)
 const F90_IS_GIVEN: bool = true;
 @else
@@ -138,8 +121,8 @@ fn vs_main(
     return surface_vertex(instance, position, normal, tangent, vec4<f32>(uv0, uv1), color);
 }
 
-/// Perceptual roughness to shade with: held above the floor, widened by how much the normal
-/// turns within the pixel.
+/// Returns the perceptual roughness for shading: at least the floor, increased by the variation of
+/// the normal within the pixel.
 fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
     var r = clamp(roughness, ROUGHNESS_FLOOR, 1.0);
     if SPECULAR_AA_VARIANCE > 0.0 {
@@ -150,7 +133,7 @@ fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
     return r;
 }
 
-/// The clear coat of a fragment.
+/// Returns the clear coat of a fragment.
 @if(CLEAR_COAT)
 fn coat_of(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32, view: vec3<f32>) -> ClearCoat {
     let values = clear_coat(texture_uv(vertex));
@@ -170,7 +153,7 @@ fn coat_of(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32, view: vec3<
     );
 }
 
-/// The sheen of a fragment.
+/// Returns the sheen of a fragment.
 @if(SHEEN)
 fn sheen_of(uv: vec4<f32>, nov: f32) -> Sheen {
     let values = sheen(uv);
@@ -186,14 +169,9 @@ fn sheen_of(uv: vec4<f32>, nov: f32) -> Sheen {
     );
 }
 
-/// The anisotropy of a fragment, whose base has `alpha`.
+/// Returns the anisotropy of a fragment whose base has `alpha`.
 @if(ANISOTROPY)
-fn anisotropy_of(
-    vertex: SurfaceVertex,
-    normal: vec3<f32>,
-    side: f32,
-    alpha: real,
-) -> Anisotropy {
+fn anisotropy_of(vertex: SurfaceVertex, normal: vec3<f32>, side: f32, alpha: real) -> Anisotropy {
     let values = anisotropy(texture_uv(vertex));
     let tangent = anisotropy_direction(normal, normal * side, vertex.tangent, values.xy);
     let floor = real(ROUGHNESS_FLOOR * ROUGHNESS_FLOOR);
@@ -205,13 +183,13 @@ fn anisotropy_of(
     );
 }
 
-/// Emission of the material, pre-exposed.
+/// Returns the emission of the material, pre-exposed.
 fn emitted(uv: vec4<f32>) -> vec3<f32> {
     let exposure = mix(1.0, frame.exposure, material.emissive_exposure_weight);
     return emission(uv) * exposure;
 }
 
-/// The lit color of a fragment, pre-exposed.
+/// Returns the lit color of a fragment, pre-exposed.
 fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>) -> vec3<f32> {
     let uv = texture_uv(vertex);
     let metal_rough = metallic_roughness(uv);
@@ -239,7 +217,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     }
     @if(IRIDESCENCE) {
         surface.film = film_of(uv, f32(nov), f0, base, f32(metallic), dielectric);
-        // Light from all around meets the film as it does toward the viewer.
+        // Ambient light reflects from the film as it does toward the viewer.
         let seen = film_reflectance(surface.film, f32(nov));
         let under = f0_from_reflectance(seen, f32(f90), f32(nov));
         f0 = mix(f0, real3(under), real(surface.film.factor));
@@ -257,7 +235,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     }
     @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
     let thickness_m = volume_thickness(uv) * vertex.scale_m;
-    // What is transmitted is tinted as what is scattered would be, and taken from it.
+    // Transmitted light has the tint of diffuse light and replaces it.
     @if(TRANSMISSION) let transmitted = real(saturate(transmission(uv)));
     @if(TRANSMISSION) let through = diffuse * transmitted;
     @if(TRANSMISSION) diffuse -= through;
@@ -283,11 +261,10 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     @if(ANISOTROPY)
     surface.anisotropy = anisotropy_of(vertex, normal, side, surface.base.alpha);
 
-    // What blends is not in the depth that ambient occlusion and reflections are made of.
+    // Blended surfaces are missing in the depth from which ambient occlusion and reflections come.
     let slope = vec2<f32>(dpdx(vertex.position.z), dpdy(vertex.position.z));
     let on_screen = ALPHA_MODE != 2u;
-    let visibility =
-        ambient_visibility(surface.base, uv, vertex.position, slope, on_screen);
+    let visibility = ambient_visibility(surface.base, uv, vertex.position, slope, on_screen);
     var below = reflect_environment(
         surface, normal, view, roughness, dfg, visibility, vertex.position, vertex.world, on_screen,
     );
@@ -305,8 +282,8 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     if SUN && takes_sun() {
         @if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
         let comes_through = is_behind(surface, frame.sun_direction);
-        // A body shadows the side of it that faces away from the sun: of light that is scattered
-        // below the surface, no shadow falls there, as in Filament.
+        // The back side of an object is in its own shadow. Subsurface scattering ignores shadows
+        // there, as in Filament.
         @if(!DIFFUSE_TRANSMISSION && (SUBSURFACE || CLOTH_SUBSURFACE)) {
             if comes_through {
                 radiance += frame.sun_illuminance
@@ -340,18 +317,7 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     return radiance;
 }
 
-/// Share of a shadow catcher that is seen: what its place lacks of the sun.
-fn caught_shadow(vertex: SurfaceVertex, geometric: vec3<f32>) -> f32 {
-    if !SUN {
-        return 0.0;
-    }
-    let slope = vec2<f32>(dpdx(vertex.position.z), dpdy(vertex.position.z));
-    let receiver = Receiver(vertex.world, geometric, vertex.position.xy, slope);
-    let visible = sun_share(sun_visibility(receiver) * contact_visibility(receiver));
-    return (1.0 - visible) * material.catcher_strength;
-}
-
-/// The color of a fragment, multiplied by its alpha, as it is seen through fog.
+/// Returns the premultiplied color of a fragment, with fog.
 fn seen_color(vertex: SurfaceVertex, front_facing: bool) -> vec4<f32> {
     @if(MATERIAL_TABLE) material = materials[vertex.material];
     // Derivatives need every lane of the quad, so the discard comes last.
@@ -367,7 +333,10 @@ fn seen_color(vertex: SurfaceVertex, front_facing: bool) -> vec4<f32> {
     }
     var caught = 1.0;
     if material_has(TRAIT_SHADOW_CATCHER) {
-        caught = caught_shadow(vertex, geometric);
+        caught = 0.0;
+        if SUN {
+            caught = caught_shadow(vertex, geometric);
+        }
     }
     if ALPHA_MODE == 1u && base.a < material.alpha_cutoff {
         discard;
@@ -391,7 +360,7 @@ fn fs_main(
     return epilogue(seen_color(vertex, front_facing), vertex.position.xy);
 }
 
-/// Weighted blended transparency (lib/weighted_blending.wgsl).
+/// Writes weighted blended transparency (lib/weighted_blending.wgsl).
 @fragment
 fn fs_weighted(
     vertex: SurfaceVertex,
@@ -402,8 +371,8 @@ fn fs_weighted(
     return WeightedFragment(sum, 1.0 - seen.a);
 }
 
-/// The first pass of moment-based transparency (lib/moment_transparency.wgsl): how much a surface
-/// hides, and where. Nothing is shaded.
+/// First pass of moment-based transparency (lib/moment_transparency.wgsl): writes absorbance and
+/// its moments, without shading.
 @fragment
 fn fs_absorbance(vertex: SurfaceVertex) -> AbsorbanceFragment {
     @if(MATERIAL_TABLE) material = materials[vertex.material];
@@ -413,7 +382,8 @@ fn fs_absorbance(vertex: SurfaceVertex) -> AbsorbanceFragment {
     return AbsorbanceFragment(absorbed, absorbed * power_moments(at));
 }
 
-/// The second pass: color and alpha, both times what surfaces in front let through.
+/// Second pass of moment-based transparency: color and alpha, times the transmittance of surfaces
+/// in front.
 @fragment
 fn fs_moments(
     vertex: SurfaceVertex,

@@ -1,7 +1,7 @@
-// Copy: one texture into another, through a full-screen triangle.
+// Copy: draws one texture into another with a full-screen triangle.
 //
-// `fs_copy` moves texels unchanged between targets of one size but different formats; where
-// the formats are equal too, a copy command is cheaper. `fs_blit` filters, for other sizes.
+// `fs_copy` copies texels unchanged between targets of the same size and different formats. For
+// equal formats, a copy command is faster. `fs_blit` filters, for targets of a different size.
 
 import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
 
@@ -20,13 +20,13 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> CopyVertex {
     return CopyVertex(position, uv_from_clip(position.xy));
 }
 
-/// The texel at the same pixel.
+/// Copies the texel at the same pixel.
 @fragment
 fn fs_copy(vertex: CopyVertex) -> @location(0) vec4<f32> {
     return textureLoad(source, vec2<i32>(vertex.position.xy), 0);
 }
 
-/// The source stretched over the target, bilinearly filtered.
+/// Stretches the source over the target with bilinear filtering.
 @fragment
 fn fs_blit(vertex: CopyVertex) -> @location(0) vec4<f32> {
     return textureSampleLevel(source, source_sampler, vertex.uv, 0.0);

@@ -1,8 +1,8 @@
 // The DFG table: directional albedo of the lobes over (nov, perceptual roughness).
 //
-// Red is ∫ D·V·Fc·cos and green ∫ D·V·cos of the GGX lobe, so that E(f0) = mix(red, green, f0)
-// and 1/green is the multiple-scattering factor; blue is ∫ D·V·cos of the cloth lobe. Texel
-// centres are the parameters 0 to 1 at both ends (lib/dfg.wgsl reads it so). GGX is sampled by
+// Red is ∫ D·V·Fc·cos and green is ∫ D·V·cos of the GGX lobe, so E(f0) = mix(red, green, f0), and
+// 1/green is the multiple-scattering factor. Blue is ∫ D·V·cos of the cloth lobe. The centers of
+// the first and last texels are the parameters 0 and 1, as lib/dfg.wgsl expects. GGX is sampled by
 // visible normals, cloth uniformly.
 
 import package::lib::dfg_integration::{dfg_ggx, dfg_cloth};
@@ -11,8 +11,8 @@ import package::lib::quantize::quantize_rgba16float;
 
 /// Width and height of the table in texels, at least 2.
 override TABLE_TEXELS: u32 = 128u;
-/// Hammon's visibility term instead of the exact one: a table must be made with the term that
-/// shades.
+/// Uses Hammon's visibility term instead of the exact one. The table must use the same term as the
+/// shading.
 override FAST_VISIBILITY: bool = false;
 /// Samples of the GGX lobe in each texel.
 override GGX_SAMPLES: u32 = 1024u;
@@ -27,7 +27,7 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
 @fragment
 fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let at = floor(position.xy) / f32(TABLE_TEXELS - 1u);
-    // Both limits exist, but 0/0 does not lead to them.
+    // Both limits exist, but direct evaluation gives 0/0.
     let nov = max(at.x, 1e-3);
     let roughness = max(at.y, 0.02);
     let ggx = dfg_ggx(nov, roughness, FAST_VISIBILITY, GGX_SAMPLES);

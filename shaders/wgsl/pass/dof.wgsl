@@ -1,8 +1,9 @@
-// Depth of field: a gather over the circle of confusion, in the steps of Filament's.
+// Depth of field: a gather over the circle of confusion, in the same steps as Filament.
 //
-// `fs_coc` puts the radius beside the radiance, `fs_level` halves both, `fs_tiles` finds the
-// radii in each tile and `fs_dilate` those that may reach into it, `fs_gather` gathers what is out
-// of focus, `fs_median` takes out what taps left over, and `fs_combine` lays it over the picture.
+// `fs_coc` adds the radius to the radiance, and `fs_level` halves both. `fs_tiles` finds the range
+// of radii in each tile, and `fs_dilate` the range that may reach into it. `fs_gather` gathers
+// out-of-focus light, `fs_median` removes noise, and `fs_combine` composites the result over the
+// image.
 
 import package::lib::dither::interleaved_gradient_noise;
 import package::lib::dof::{
@@ -11,43 +12,43 @@ import package::lib::dof::{
 import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
 import package::lib::math::PI;
 
-/// Mirrored by `layout::DofUniforms`.
+/// Settings. Mirrored by `layout::DofUniforms`.
 struct DofUniforms {
-    /// What z and w of clip space are made of, see lib/unproject.wgsl.
+    /// Coefficients of z and w in clip space, see lib/unproject.wgsl.
     depth_row: vec4<f32>,
-    /// The largest radius before and behind what is in focus, in pixels.
+    /// Maximum radius in front of and behind the focus plane, in pixels.
     most_px: vec2<f32>,
-    /// One over the size of the picture, in 1/pixels.
+    /// Reciprocal of the image size, in 1/pixels.
     per_px: vec2<f32>,
-    /// What is in focus, in m.
+    /// Focus distance, in m.
     focus_m: f32,
-    /// Diameter of what is infinitely far away, in pixels.
+    /// Diameter of the circle of confusion at infinity, in pixels.
     scale_px: f32,
-    /// Texels of the gather to a tile.
+    /// Width and height of a tile, in texels of the gather.
     tile_texels: f32,
-    /// The last level there is.
+    /// Number of the last mip level.
     last_level: f32,
 }
 
-/// Pixels of the picture to a texel of the gather: 1 or 2.
+/// Pixels of the image per texel of the gather: 1 or 2.
 override TEXEL_PX: f32 = 1.0;
-/// Rings of taps before what is in focus, behind it, and where all has one radius.
+/// Number of rings of taps in the foreground, in the background, and for a constant radius.
 override RINGS_BEFORE: f32 = 5.0;
 override RINGS_BEHIND: f32 = 5.0;
 override RINGS_EVEN: f32 = 5.0;
 
 @group(0) @binding(0) var<uniform> dof: DofUniforms;
-/// Pre-exposed radiance, of one sample per texel.
+/// Pre-exposed radiance, single-sampled.
 @group(0) @binding(1) var hdr: texture_2d<f32>;
-/// Its depth, reversed; of the same size.
+/// Reversed depth, of the same size as the radiance.
 @group(0) @binding(2) var scene_depth: texture_2d<f32>;
-/// Radiance, and the radius in alpha: all levels, or the one above.
+/// Radiance, and the radius in alpha: all levels, or the previous level.
 @group(0) @binding(3) var field: texture_2d<f32>;
 /// Linear filter, clamp to edge.
 @group(0) @binding(4) var field_sampler: sampler;
-/// The least and the largest radius of a tile.
+/// Minimum and maximum radius of a tile.
 @group(0) @binding(5) var tiles: texture_2d<f32>;
-/// What was gathered, times its opacity, and that in alpha.
+/// Gathered color, multiplied by its opacity; opacity in alpha.
 @group(0) @binding(6) var gathered: texture_2d<f32>;
 
 struct DofVertex {
@@ -65,7 +66,8 @@ fn brightness(color: vec3<f32>) -> f32 {
     return max(color.r, max(color.g, color.b));
 }
 
-/// Radiance and radius. At half the size the nearest of four counts, and bright texels less.
+/// Computes radiance and radius. At half size, the nearest of four pixels counts, and bright texels
+/// have less weight.
 @fragment
 fn fs_coc(vertex: DofVertex) -> @location(0) vec4<f32> {
     let side = i32(TEXEL_PX);
@@ -116,7 +118,7 @@ fn fs_tiles(vertex: DofVertex) -> @location(0) vec4<f32> {
     return vec4<f32>(least, largest, 0.0, 0.0);
 }
 
-/// Two tiles of 16 pixels either way: circles have a radius of up to 32.
+/// Searches two tiles of 16 pixels in each direction: circles have a radius of up to 32.
 @fragment
 fn fs_dilate(vertex: DofVertex) -> @location(0) vec4<f32> {
     let last = vec2<i32>(textureDimensions(tiles, 0)) - 1;
@@ -130,7 +132,7 @@ fn fs_dilate(vertex: DofVertex) -> @location(0) vec4<f32> {
     return vec4<f32>(found, 0.0, 0.0);
 }
 
-/// The radii that may reach a texel of the gather.
+/// Returns the radii that may reach a texel of the gather.
 fn tile_of(position: vec2<f32>) -> vec2<f32> {
     return textureLoad(tiles, vec2<i32>(position / dof.tile_texels), 0).rg;
 }
@@ -149,13 +151,14 @@ fn level_of(rings: f32, radius_px: f32) -> i32 {
     return i32(min(ring_level(rings, radius_px / TEXEL_PX), dof.last_level));
 }
 
-/// Place `number` of ring `ring`, 1…, in rings: eight more to each, every second ring turned.
+/// Returns tap `number` of ring `ring`, starting at 1, in units of rings. Each ring has eight more
+/// taps, and every second ring is rotated.
 fn on_ring(ring: f32, number: f32) -> vec2<f32> {
     let angle = (number + 0.5 * (ring % 2.0)) * (2.0 * PI / (8.0 * ring));
     return ring * vec2<f32>(cos(angle), sin(angle));
 }
 
-/// All taps within one radius count alike.
+/// Gathers with equal weights within one radius.
 fn gather_even(uv: vec2<f32>, radius: f32, noise: vec2<f32>) -> vec4<f32> {
     let rings = RINGS_EVEN;
     let level = f32(level_of(rings, radius));
@@ -173,8 +176,8 @@ fn gather_even(uv: vec2<f32>, radius: f32, noise: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(sum / count * opacity, opacity);
 }
 
-/// What is before what is in focus: two layers, the nearer over the other. Of two taps opposite one
-/// another the nearer speaks for both, which guesses what it hides.
+/// Gathers the foreground as two layers, the nearer over the other. The nearer of two opposite taps
+/// counts for both, as a guess of the hidden part.
 fn gather_before(uv: vec2<f32>, tile: vec2<f32>, noise: vec2<f32>) -> vec4<f32> {
     let rings = RINGS_BEFORE;
     let radius = -tile.x;
@@ -209,8 +212,8 @@ fn gather_before(uv: vec2<f32>, tile: vec2<f32>, noise: vec2<f32>) -> vec4<f32> 
     return vec4<f32>(near + far * (1.0 - opacity.x), 1.0 - (1.0 - opacity.x) * (1.0 - opacity.y));
 }
 
-/// Taps of one ring: radiance times weight, weight, radius times weight, and how many reach
-/// farther.
+/// Sums over the taps of one ring: radiance times weight, weight, radius times weight, and the
+/// number of taps that reach farther.
 struct Ring {
     color: vec3<f32>,
     weight: f32,
@@ -218,8 +221,8 @@ struct Ring {
     farther: f32,
 }
 
-/// What is behind what is in focus, from the outer ring inward: a ring hides those behind it by as
-/// much as it is nearer and covers.
+/// Gathers the background from the outer ring inward. A ring hides the rings behind it by its
+/// nearness and its coverage.
 fn gather_behind(uv: vec2<f32>, noise: vec2<f32>) -> vec4<f32> {
     let rings = RINGS_BEHIND;
     let radius = abs(tap(uv, 0).a);
@@ -259,7 +262,7 @@ fn gather_behind(uv: vec2<f32>, noise: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(all.color / max(all.weight, 1e-6) * opacity, opacity);
 }
 
-/// 1 above 0, else 0.
+/// Returns 1 for x > 0, otherwise 0.
 fn step_above(x: f32) -> f32 {
     return select(0.0, 1.0, x > 0.0);
 }
@@ -288,14 +291,14 @@ fn fs_gather(vertex: DofVertex) -> @location(0) vec4<f32> {
     return before + (1.0 - before.a) * behind;
 }
 
-/// Sorts two of them, channel by channel.
+/// Sorts two values, channel by channel.
 fn sort(v: ptr<function, array<vec4<f32>, 9>>, a: u32, b: u32) {
     let least = min((*v)[a], (*v)[b]);
     (*v)[b] = max((*v)[a], (*v)[b]);
     (*v)[a] = least;
 }
 
-/// The median of three by three texels, channel by channel (Devillard's network of 19 exchanges).
+/// Returns the median of 3×3 texels, per channel (Devillard's network of 19 exchanges).
 @fragment
 fn fs_median(vertex: DofVertex) -> @location(0) vec4<f32> {
     if in_focus(tile_of(vertex.position.xy)) {
@@ -329,7 +332,7 @@ fn fs_median(vertex: DofVertex) -> @location(0) vec4<f32> {
     return v[4];
 }
 
-/// What was gathered over what is in focus.
+/// Composites the gathered light over the image.
 @fragment
 fn fs_combine(vertex: DofVertex) -> @location(0) vec4<f32> {
     let color = textureLoad(hdr, vec2<i32>(vertex.position.xy), 0);

@@ -1,46 +1,46 @@
-// Lens flare: ghosts and a halo of what glows, blurred. `fs_flare` makes it, `fs_blur` blurs along
-// an axis, and with the second leaves rays of it.
+// Lens flare: ghosts and a halo of bright parts. `fs_flare` draws them, and `fs_blur` blurs along
+// one axis; the second blur also applies star rays.
 
 import package::lib::flare::{flare_ring, ghost_place, flare_direction, starburst};
 import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
 
-/// Mirrored by `layout::FlareUniforms`.
+/// Settings. Mirrored by `layout::FlareUniforms`.
 struct FlareUniforms {
-    /// Width over height.
+    /// Aspect ratio, width over height.
     aspect: f32,
-    /// How far apart red and blue are, in shares of the picture.
+    /// Chromatic aberration: distance between red and blue, as a fraction of the image size.
     aberration: f32,
-    /// How many ghosts.
+    /// Number of ghosts.
     ghosts: f32,
-    /// Between ghosts, in shares of the way to the middle.
+    /// Distance between ghosts, as a fraction of the distance to the center.
     ghost_spacing: f32,
-    /// Brightness from which on there are ghosts.
+    /// Brightness threshold of ghosts.
     ghost_threshold: f32,
-    /// In shares of the height.
+    /// Radius of the halo, as a fraction of the height.
     halo_radius: f32,
-    /// In shares of the height; 0: there is none.
+    /// Thickness of the halo, as a fraction of the height; 0 for no halo.
     halo_thickness: f32,
-    /// Brightness from which on there is a halo.
+    /// Brightness threshold of the halo.
     halo_threshold: f32,
-    /// From texel to texel of the blur, in texels.
+    /// Step of the blur, in texels.
     axis: vec2<f32>,
-    /// How far rays are turned.
+    /// Rotation of the star rays.
     turn: f32,
-    /// 1: there are rays. 0: all is left.
+    /// 1: draws star rays. 0: leaves the flare unchanged.
     rays: f32,
-    /// From coordinates of what glows to coordinates of the span that the flare is centered in:
-    /// factor and summand.
+    /// Scale and offset from coordinates of the bloom texture to coordinates of the area in which
+    /// the flare is centered.
     span_scale: vec2<f32>,
     span_offset: vec2<f32>,
 }
 
-/// Taps of the blur on either side.
+/// Number of taps on each side.
 const FLARE_REACH: i32 = 4;
 /// Standard deviation of the blur, in texels.
 const FLARE_SIGMA: f32 = 1.6666667;
 
 @group(0) @binding(0) var<uniform> flare: FlareUniforms;
-/// What glows; or the flare before it is blurred.
+/// Bloom texture, or the flare before it is blurred.
 @group(0) @binding(1) var glow: texture_2d<f32>;
 /// Linear filter, clamp to edge.
 @group(0) @binding(2) var glow_sampler: sampler;
@@ -56,18 +56,18 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> FlareVertex {
     return FlareVertex(position, uv_from_clip(position.xy));
 }
 
-/// Coordinates in the span of coordinates of what glows.
+/// Converts coordinates of the bloom texture to coordinates of the flare's area.
 fn to_span(uv: vec2<f32>) -> vec2<f32> {
     return uv * flare.span_scale + flare.span_offset;
 }
 
-/// Glow at coordinates in the span.
+/// Returns the glow at coordinates of the flare's area.
 fn glow_at(uv: vec2<f32>) -> vec3<f32> {
     let at = (uv - flare.span_offset) / flare.span_scale;
     return textureSampleLevel(glow, glow_sampler, at, 0.0).rgb;
 }
 
-/// What glows there above the threshold, at most 1, its colors apart.
+/// Returns the glow above the threshold, at most 1, with chromatic aberration.
 fn parted(uv: vec2<f32>, threshold: f32) -> vec3<f32> {
     let d = flare_direction(uv, 1.0) * flare.aberration;
     let color = vec3<f32>(glow_at(uv + d).r, glow_at(uv).g, glow_at(uv - d).b);

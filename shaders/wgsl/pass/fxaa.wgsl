@@ -1,9 +1,9 @@
-// FXAA: softens the edges of a finished picture (decisions in lib/fxaa.wgsl).
+// FXAA: smooths the edges of the final image (decisions in lib/fxaa.wgsl).
 //
-// Input: sRGB encoded color with its luma in alpha (pass/post.wgsl with OUTPUT_ENCODED and
-// LUMA_IN_ALPHA). It works on encoded values because that is where contrast is even. Applied
-// to Filament's own unfiltered picture of slanted edges it gives Filament's filtered one at
-// 50 dB; what differs are exact ties of the two-tap test.
+// Input: sRGB encoded color with luma in alpha (pass/post.wgsl with OUTPUT_ENCODED and
+// LUMA_IN_ALPHA). It works on encoded values because their contrast is perceptually uniform. For
+// Filament's unfiltered image of slanted edges, the result matches Filament's at 50 dB; differences
+// come from exact ties of the two-tap test.
 
 import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
 import package::lib::fxaa::{fxaa_is_edge, fxaa_direction, fxaa_span_texels};
@@ -11,17 +11,17 @@ import package::lib::srgb::linear_from_srgb;
 
 /// Settings of the pass. Mirrored by `layout::FxaaUniforms`.
 struct FxaaUniforms {
-    /// Shrinks the span; 8 is usual.
+    /// Divisor of the second tap pair's distance; 8 is usual.
     edge_sharpness: f32,
-    /// Least contrast filtered, as a share of the brightest luma; 0.08.
+    /// Minimum contrast that is filtered, as a share of the largest luma; 0.08.
     edge_threshold: f32,
-    /// Least contrast filtered at all; 0.04.
+    /// Minimum contrast that is filtered, absolute; 0.04.
     edge_threshold_min: f32,
-    /// Share of the unfiltered pixel kept in the result; 0.25.
+    /// Weight of the unfiltered pixel in the result; 0.25.
     centre_weight: f32,
 }
 
-/// True writes encoded values to a Unorm target, false linear ones to an sRGB target.
+/// True writes encoded values to a Unorm target, false writes linear values to an sRGB target.
 override OUTPUT_ENCODED: bool = false;
 
 @group(0) @binding(0) var<uniform> fxaa: FxaaUniforms;
@@ -40,15 +40,15 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> FxaaVertex {
     return FxaaVertex(position, uv_from_clip(position.xy));
 }
 
-/// The filtered encoded color at texture coordinates `uv`.
+/// Returns the filtered encoded color at texture coordinates `uv`.
 fn filter_edge(uv: vec2<f32>) -> vec3<f32> {
     let size = vec2<i32>(textureDimensions(ldr, 0));
     let texel = 1.0 / vec2<f32>(size);
     let pixel = vec2<i32>(uv * vec2<f32>(size));
     let first = max(pixel - 1, vec2<i32>(0));
     let last = min(pixel + 1, size - 1);
-    // Luma of the pixel and its eight neighbours, loaded and not filtered: a gather has the four
-    // texels about a corner as (bottom left, bottom right, top right, top left).
+    // Luma of the pixel and its eight neighbors, loaded without filtering. A gather returns the
+    // four texels around a corner as (bottom left, bottom right, top right, top left).
     let centre = textureLoad(ldr, pixel, 0);
     let around_nw = textureGather(3, ldr, ldr_sampler, uv - 0.5 * texel);
     let around_se = textureGather(3, ldr, ldr_sampler, uv + 0.5 * texel);
@@ -74,7 +74,7 @@ fn filter_edge(uv: vec2<f32>) -> vec3<f32> {
     let outer = textureSampleLevel(ldr, ldr_sampler, uv - far, 0.0)
         + textureSampleLevel(ldr, ldr_sampler, uv + far, 0.0);
     let four = (two + outer) * 0.25;
-    // The wide pair reached past the edge if it brought in a luma that is not there.
+    // The wide pair reached past the edge if its luma is outside the local range.
     let overshoots = four.a < corner_min || four.a > corner_max;
     let filtered = select(four.rgb, two.rgb * 0.5, overshoots);
     return mix(filtered, centre.rgb, fxaa.centre_weight);

@@ -1,16 +1,15 @@
-// Image-based light: from a panorama to a cube of prefiltered radiance, a face and level a draw.
+// Image-based light: converts a panorama to a prefiltered cube, one face and level per draw.
 //
 // 1. `fs_cube` resamples the panorama into the faces of a cube.
 // 2. `fs_mip` halves a level of that cube.
-// 3. `fs_prefilter` gathers, for each direction, the lobe of one roughness from the cube, with
-//    the split-sum assumption that viewer, normal and reflection coincide. The lobe's samples
-//    come as a table, the same for every texel: each reads the level whose texels cover about
-//    the solid angle it stands for (Křivánek and Colbert, GPU Gems 3, chapter 20), so 64 do
-//    what 1000 unfiltered ones would.
+// 3. `fs_prefilter` integrates the lobe of one roughness for each direction, with the split-sum
+// assumption that view, normal and reflection directions coincide. A table holds the lobe's sample
+// directions. Each sample reads the level whose texels cover about its solid angle (Křivánek and
+// Colbert, GPU Gems 3, chapter 20), so 64 samples replace 1000 unfiltered ones.
 //
-// Radiance is kept relative to a power of two, so that any photometric range fits the small
-// floats of the targets. Values are rounded to the target's format here: left to the device,
-// they may be cut off instead, which would dim small formats by 1 %, and blue most.
+// Radiance is stored relative to a power of two, so that any photometric range fits the small
+// floats of the targets. The shader rounds values to the target's format. Devices may truncate
+// instead, which darkens small formats by 1 %, and blue most.
 
 import package::lib::cube::{direction_from_cube_uv, cube_solid_angle_weight};
 import package::lib::environment::equirect_uv_from_direction;
@@ -18,31 +17,32 @@ import package::lib::fullscreen::fullscreen_position;
 import package::lib::normal_map::duff_tangent;
 import package::lib::quantize::{quantize_rgba16float, quantize_rg11b10ufloat};
 
-/// What a draw fills. Mirrored by `layout::IblUniforms`.
+/// Settings of a draw. Mirrored by `layout::IblUniforms`.
 struct IblUniforms {
     /// Face of the cube, 0…5.
     face: u32,
     /// Width and height of the target in texels.
     size_texels: u32,
-    /// `fs_cube`: samples along each side of a texel. `fs_prefilter`: rows of the table in use.
+    /// `fs_cube`: samples along each side of a texel. `fs_prefilter`: number of table rows in use.
     samples: u32,
-    /// `fs_cube`: factor on the panorama. `fs_prefilter`: one over the sum of the weights.
+    /// `fs_cube`: factor on the panorama. `fs_prefilter`: reciprocal of the sum of the weights.
     scale: f32,
 }
 
-/// Directions of a lobe about +Z, normalized, in xyz; z is also the weight (the cosine to the
-/// normal). w is the level of the cube to read. Mirrored by `layout::IblKernelUniforms`.
+/// Sample directions of a lobe around +Z, normalized, in xyz; z is also the weight (cosine to the
+/// normal). w is the mip level of the cube. Mirrored by `layout::IblKernelUniforms`.
 struct IblKernelUniforms {
     rows: array<vec4<f32>, 4096>,
 }
 
-/// True where the target is Rg11b10Ufloat, false where it is Rgba16Float.
+/// True if the target is Rg11b10Ufloat, false if it is Rgba16Float.
 override SMALL_FLOATS: bool = false;
 
 @group(0) @binding(0) var<uniform> ibl: IblUniforms;
-/// Equirectangular radiance, 32-bit floats: only loaded, since those may not be filterable.
+/// Equirectangular radiance in 32-bit floats; read without filtering, because they may not be
+/// filterable.
 @group(0) @binding(1) var panorama: texture_2d<f32>;
-/// `fs_mip`: the level above, alone. `fs_prefilter`: the cube with all its levels.
+/// `fs_mip`: only the previous level. `fs_prefilter`: the cube with all its levels.
 @group(0) @binding(2) var cube: texture_cube<f32>;
 /// Trilinear filter.
 @group(0) @binding(3) var cube_sampler: sampler;
@@ -53,7 +53,7 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(vertex, 0.0);
 }
 
-/// What the target will hold.
+/// Rounds a color to the target's format.
 fn stored(color: vec3<f32>) -> vec4<f32> {
     if SMALL_FLOATS {
         return quantize_rg11b10ufloat(color, false);
@@ -61,7 +61,7 @@ fn stored(color: vec3<f32>) -> vec4<f32> {
     return quantize_rgba16float(vec4<f32>(color, 1.0), false);
 }
 
-/// The panorama at uv, bilinearly filtered; it goes around in u and ends in v.
+/// Samples the panorama at uv bilinearly; it wraps in u and clamps in v.
 fn panorama_at(uv: vec2<f32>) -> vec3<f32> {
     let size = vec2<i32>(textureDimensions(panorama, 0));
     let at = uv * vec2<f32>(size) - 0.5;
@@ -84,7 +84,7 @@ fn panorama_at(uv: vec2<f32>) -> vec3<f32> {
     return mix(top, bottom, share.y);
 }
 
-/// The mean of the panorama over a texel of the cube, from a grid of samples.
+/// Averages the panorama over a texel of the cube, from a grid of samples.
 @fragment
 fn fs_cube(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let corner = floor(position.xy);
@@ -100,8 +100,8 @@ fn fs_cube(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     return stored(sum * (stride * stride * ibl.scale));
 }
 
-/// The mean of four texels, weighted by their solid angles. They are sampled at their centres: a
-/// cube cannot be loaded from, and OpenGL has no other view of it.
+/// Averages four texels, weighted by their solid angles. It samples at texel centers, because cubes
+/// cannot be loaded from, and OpenGL has no other view of a cube.
 @fragment
 fn fs_mip(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let corner = 2.0 * floor(position.xy);
@@ -117,7 +117,7 @@ fn fs_mip(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     return stored(sum.rgb / sum.w);
 }
 
-/// Radiance gathered by the lobe about the texel's direction.
+/// Integrates radiance over the lobe around the texel's direction.
 @fragment
 fn fs_prefilter(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let uv = position.xy / f32(ibl.size_texels);

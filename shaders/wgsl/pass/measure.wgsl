@@ -1,20 +1,20 @@
-// Measure: the most and the least of what a picture has, for decisions on the CPU.
+// Measure: finds the maximum and minimum of an image, for decisions on the CPU.
 //
-// `fs_light` and `fs_depth` take eight by eight texels of the picture to one, `fs_smaller` eight by
-// eight of those. The CPU reads what is left.
+// `fs_light` and `fs_depth` reduce 8×8 pixels of the image to one texel, and `fs_smaller` reduces
+// 8×8 of these texels to one. The CPU reads the final result.
 
 import package::lib::bloom::brightest;
 import package::lib::fullscreen::fullscreen_position;
 import package::lib::numerics::saturate_half3;
 
-/// Texels to a side of what one texel stands for.
+/// Side length of the area that one texel represents, in source texels.
 const MEASURED_SIDE: i32 = 8;
 
-/// Pre-exposed radiance, of one sample per texel.
+/// Pre-exposed radiance, single-sampled.
 @group(0) @binding(0) var hdr: texture_2d<f32>;
-/// Its depth, reversed; of the same size.
+/// Reversed depth, of the same size as the radiance.
 @group(0) @binding(1) var scene_depth: texture_2d<f32>;
-/// The most and the least so far.
+/// Intermediate maximum and minimum.
 @group(0) @binding(2) var measured: texture_2d<f32>;
 
 @vertex
@@ -22,14 +22,13 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(vertex, 0.0);
 }
 
-/// A texel of those that the texel at `position` stands for, the last of a row or column where
-/// there are no more.
+/// Returns one of the source texels of the texel at `position`, clamped to the image border.
 fn measured_texel(position: vec4<f32>, i: i32, size: vec2<u32>) -> vec2<i32> {
     let own = vec2<i32>(i % MEASURED_SIDE, i / MEASURED_SIDE);
     return min(vec2<i32>(position.xy) * MEASURED_SIDE + own, vec2<i32>(size) - 1);
 }
 
-/// The brightest channel; what is not a number counts as black, as it does for bloom.
+/// Finds the brightest channel; NaN counts as black, as in bloom.
 @fragment
 fn fs_light(@builtin(position) position: vec4<f32>) -> @location(0) vec2<f32> {
     var found = vec2<f32>(0.0, 65504.0);
@@ -41,7 +40,7 @@ fn fs_light(@builtin(position) position: vec4<f32>) -> @location(0) vec2<f32> {
     return found;
 }
 
-/// The nearest and the farthest.
+/// Finds the nearest and the farthest depth.
 @fragment
 fn fs_depth(@builtin(position) position: vec4<f32>) -> @location(0) vec2<f32> {
     var found = vec2<f32>(0.0, 1.0);

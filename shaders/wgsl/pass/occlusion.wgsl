@@ -1,9 +1,9 @@
-// Ambient occlusion from the structure of the scene: what of the hemisphere over a surface is
-// open, as far as the picture shows it.
+// Ambient occlusion from the depth pyramid: the open part of the hemisphere above a surface, as far
+// as the screen shows it.
 //
 // `fs_sao` is scalable ambient obscurance (lib/sao.wgsl), `fs_gtao` finds horizons in slices
-// (lib/gtao.wgsl). Both give visibility, 0…1, in red, 1 where there is nothing; and the mean open
-// direction in world space in the other channels.
+// (lib/gtao.wgsl). Both write visibility, 0…1, to red, and 1 for the background. The other channels
+// hold the mean open direction in world space.
 
 import package::interface::frame::frame;
 import package::interface::structure::{
@@ -25,19 +25,19 @@ import package::lib::unproject::{Projection, ndc_from_view, view_position, view_
 
 /// Cones toward the dominant light. Mirrored by `layout::ConeUniforms`.
 struct ConeUniforms {
-    /// Length, in m.
+    /// Length of a cone, in m.
     reach_m: f32,
-    /// Tangent of half the angle at the tip.
+    /// Tangent of the half angle at the tip.
     tangent: f32,
-    /// How far in front of a cone something may be and still touch it, in m.
+    /// Maximum distance in front of a cone at which a surface counts as contact, in m.
     contact_m: f32,
-    /// What fills less of a slice than this, in m, fills nothing: for a surface that faces the
-    /// light, and what one edge-on to it has in addition.
+    /// Depth bias, in m: for a surface that faces the light, and the addition for one edge-on to
+    /// it.
     bias_m: f32,
     slope_bias_m: f32,
-    /// Factor on what is shadowed.
+    /// Factor on the occlusion.
     intensity: f32,
-    /// Slices of a cone, and cones.
+    /// Number of slices per cone, and number of cones.
     steps: f32,
     rays: f32,
 }
@@ -45,53 +45,54 @@ struct ConeUniforms {
 /// Settings. Mirrored by `layout::OcclusionUniforms`.
 struct OcclusionUniforms {
     projection: Projection,
-    /// How far occluders count, in m.
+    /// Maximum distance of occluders, in m.
     radius_m: f32,
-    /// Texels of level 0 that the radius spans a meter ahead of the eye.
+    /// Size of the radius in texels of level 0, at a distance of 1 m from the eye.
     radius_texels: f32,
-    /// The most texels that the radius may span: what is before the eye would span the picture.
+    /// Maximum size of the radius, in texels; limits the size for surfaces close to the eye.
     most_texels: f32,
-    /// Rise over the tangent plane that occludes nothing, a share of the distance from the eye.
+    /// Height above the tangent plane that occludes nothing, as a fraction of the distance from the
+    /// eye.
     bias: f32,
-    /// Factor on what is obscured.
+    /// Factor on the obscurance.
     intensity: f32,
-    /// Exponent of what is not obscured.
+    /// Exponent of the visibility.
     power: f32,
-    /// Squared sine of the least angle over the tangent plane that occludes.
+    /// Squared sine of the minimum angle above the tangent plane that occludes.
     min_sin2: f32,
-    /// Number of the structure's last level.
+    /// Index of the depth pyramid's last level.
     last_level: i32,
-    /// Cosine and sine of the angle from tap to tap of the spiral.
+    /// Cosine and sine of the angle between taps of the spiral.
     tap_rotation: vec2<f32>,
-    /// Taps of the spiral.
+    /// Number of taps in the spiral.
     taps: f32,
-    /// 1 / (taps - ½).
+    /// Reciprocal tap spacing, 1 / (taps - ½).
     per_tap: f32,
-    /// Slices, and steps on either side of each.
+    /// Number of slices, and of steps on each side of a slice.
     slices: f32,
     steps: f32,
-    /// Exponent of the share of the way from step to step: more than 1 is denser near the middle.
+    /// Exponent of the step distribution: values above 1 concentrate steps near the center.
     step_power: f32,
-    /// How far behind its front something still occludes, in m, for a bitmask.
+    /// Thickness of occluders behind their front, in m, for the visibility bitmask.
     thickness_m: f32,
     cone: ConeUniforms,
 }
 
 @group(0) @binding(22) var<uniform> settings: OcclusionUniforms;
 
-/// Normals from the nearer of two texels each side; else from the next texel of each axis, which
-/// is wrong along edges.
+/// Computes normals from the nearer of the two texels on each axis; otherwise from the next texel,
+/// which is wrong along edges.
 override FINE_NORMALS: bool = true;
-/// A tap is where its depth was found; else where the spiral points, as Filament has it, which
-/// tilts surfaces and takes 15 % from open ones.
+/// Places taps at the texel whose depth was read; otherwise on the spiral, as in Filament, which
+/// tilts surfaces and darkens open ones by 15 %.
 override EXACT_TAPS: bool = true;
-/// Occluders end some way behind their front: what is open is kept in bits, not as one horizon.
+/// Gives occluders a finite thickness: the open part is stored as a bitmask, not as one horizon.
 override BITMASK: bool = false;
-/// Filament's falloff of horizons with distance; else they count fully within the radius.
+/// Uses Filament's distance falloff of horizons; otherwise they count fully within the radius.
 override SMOOTH_FALLOFF: bool = false;
-/// The mean open direction is wanted.
+/// Outputs the mean open direction.
 override BENT_NORMALS: bool = false;
-/// The dominant light is traced for contact.
+/// Traces cones toward the dominant light.
 override CONE: bool = false;
 
 @vertex
@@ -99,7 +100,7 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(vertex, 0.0);
 }
 
-/// Unit normal of what a texel shows, in view space.
+/// Returns the unit normal of a texel's surface, in view space.
 fn normal_of(texel: vec2<i32>, depth: f32, origin: vec3<f32>) -> vec3<f32> {
     let x = vec2<i32>(1, 0);
     let y = vec2<i32>(0, 1);
@@ -117,7 +118,7 @@ fn normal_of(texel: vec2<i32>, depth: f32, origin: vec3<f32>) -> vec3<f32> {
     return normalize_or(cross(down, right), vec3<f32>(0.0, 0.0, 1.0));
 }
 
-/// What is at a point in texels, `away` texels from where it is seen from.
+/// Reads the depth at a point in texels, `away` texels from the receiver.
 fn tap(at: vec2<f32>, away: f32) -> StructureTap {
     let level = pyramid_level(away, settings.last_level);
     if EXACT_TAPS {
@@ -130,28 +131,27 @@ fn tap(at: vec2<f32>, away: f32) -> StructureTap {
     return StructureTap(position, depth != 0.0);
 }
 
-/// Texels that the radius spans at a position.
+/// Returns the radius in texels at a position.
 fn radius_texels(origin: vec3<f32>) -> f32 {
     let w = settings.projection.depth.z * origin.z + settings.projection.depth.w;
     return min(settings.radius_texels / max(w, 1e-6), settings.most_texels);
 }
 
-/// Share of the hemisphere that is obscured, and the mean open direction in view space, not of
-/// unit length.
+/// Obscured share of the hemisphere, and the mean open direction in view space, not normalized.
 struct Obscured {
     share: f32,
     bent: vec3<f32>,
 }
 
-/// The point on the sphere about a tap's foot on the normal that a tap leaves open: where it
-/// stands, lifted along the normal to the radius.
+/// Returns the open point above a tap: the tap moved along the normal to the sphere with the radius
+/// of the effect.
 fn lifted(v: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let rise = dot(v, normal);
     let rest = settings.radius_m * settings.radius_m - (dot(v, v) - rise * rise);
     return normalize_or(v + normal * (sqrt(max(rest, 0.0)) - rise), normal);
 }
 
-/// By scalable ambient obscurance.
+/// Computes scalable ambient obscurance.
 fn scalable_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -> Obscured {
     let noise = interleaved_gradient_noise(pixel, 0u);
     let start = 2.0 * PI * 2.4 * noise;
@@ -180,23 +180,23 @@ fn scalable_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -
     return Obscured(sao_obscurance(sum / settings.taps, settings.intensity), bent);
 }
 
-/// A slice of the hemisphere.
+/// Slice of the hemisphere.
 struct Slice {
-    /// Toward the viewer, and where the slice points, at right angles to it.
+    /// Direction toward the viewer, and the perpendicular direction of the slice.
     view: vec3<f32>,
     along: vec3<f32>,
     /// Angle of the normal in the slice.
     n: f32,
 }
 
-/// Angle of a direction in a slice, from the viewer's direction.
+/// Returns the angle between the view direction and a direction, in a slice.
 fn slice_angle(s: Slice, direction: vec3<f32>) -> f32 {
     let cosine = dot(direction, s.view) * inverseSqrt(max(dot(direction, direction), 1e-20));
     return acos_held(cosine) * select(-1.0, 1.0, dot(direction, s.along) >= 0.0);
 }
 
-/// Whether what is at v (m, from the point) counts as an occluder: it is within the radius and
-/// rises over the tangent plane.
+/// Returns true if v (m, relative to the receiver) is an occluder: within the radius and above the
+/// tangent plane.
 fn rises(v: vec3<f32>, normal: vec3<f32>, bias_m: f32) -> bool {
     let vv = dot(v, v);
     let rise = dot(v, normal);
@@ -204,9 +204,9 @@ fn rises(v: vec3<f32>, normal: vec3<f32>, bias_m: f32) -> bool {
         && rise * rise >= vv * settings.min_sin2;
 }
 
-/// What a horizon becomes of a sample that rises to `angle`, both counted from the viewer's
-/// direction, without sign. By Filament's falloff a sample counts less the farther it is, and what
-/// lies below the horizon lowers it a little, since things are thin.
+/// Updates a horizon with a sample at `angle`, both measured from the view direction, without sign.
+/// With Filament's falloff, distant samples count less, and samples below the horizon lower it
+/// slightly to approximate thin occluders.
 fn lower_horizon(horizon: f32, angle: f32, v: vec3<f32>) -> f32 {
     if !SMOOTH_FALLOFF {
         return min(horizon, angle);
@@ -217,7 +217,7 @@ fn lower_horizon(horizon: f32, angle: f32, v: vec3<f32>) -> f32 {
     return acos_held(select(mix(before, found, 0.004), mix(found, before, fade), found > before));
 }
 
-/// By horizons in slices.
+/// Computes obscurance from the horizons of slices.
 fn horizon_obscurance(texel: vec2<i32>, origin: vec3<f32>, normal: vec3<f32>) -> Obscured {
     let disc = max(radius_texels(origin), 1.0);
     let bias_m = settings.bias * abs(origin.z);
@@ -244,7 +244,7 @@ fn horizon_obscurance(texel: vec2<i32>, origin: vec3<f32>, normal: vec3<f32>) ->
             let share = (j + jitter) / settings.steps;
             let away = max(pow(share, settings.step_power) * disc, 1.0 + j);
             for (var side = -1.0; side <= 1.0; side += 2.0) {
-                // Rows of the picture go down.
+                // Image rows run downward.
                 let at = vec2<f32>(texel) + 0.5 + side * away * vec2<f32>(screen.x, -screen.y);
                 let found = tap(at, away);
                 let v = found.position - origin;
@@ -275,13 +275,13 @@ fn horizon_obscurance(texel: vec2<i32>, origin: vec3<f32>, normal: vec3<f32>) ->
             bent += weight * (mean.x * s.along + mean.y * view);
         }
     }
-    // Over what the same slices give where nothing occludes: a few slices of tilted ground are
-    // not exactly its hemisphere.
+    // Divides by the unoccluded result of the slices, because a few slices of a tilted surface do
+    // not cover exactly its hemisphere.
     let visible = saturate(light / max(whole, 1e-6));
     return Obscured(saturate(settings.intensity * (1.0 - visible)), bent);
 }
 
-/// Share of the dominant light that cones toward it find shadowed.
+/// Returns the share of the dominant light that the cones find shadowed.
 fn light_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -> f32 {
     let cone = settings.cone;
     let w = frame.world_from_view;
@@ -290,7 +290,7 @@ fn light_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -> f
     let facing = dot(normal, to_light);
     let p = settings.projection;
     let end = origin + cone.reach_m * to_light;
-    // Behind the surface there is nothing to trace, and behind the eye no picture.
+    // Faces away from the light, or ends behind the eye: nothing to trace.
     if facing < 0.0 || !(p.depth.z * end.z + p.depth.w > 1e-4) {
         return 0.0;
     }
@@ -309,7 +309,7 @@ fn light_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -> f
             let radius_texels = across * cone.tangent * t * length(way);
             let depth = structure_depth(vec2<i32>(floor(pixel + way * t + aside * radius_texels)));
             if depth > 0.0 {
-                // What is linear on the screen is the inverse of the distance, where that counts.
+                // The inverse distance is linear on the screen.
                 let on_axis = 1.0 / mix(1.0 / origin.z, 1.0 / end.z, t);
                 let axis_m = -select(mix(origin.z, end.z, t), on_axis, p.depth.z != 0.0);
                 let scene_m = -view_z(depth, p.depth);
@@ -323,7 +323,8 @@ fn light_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -> f
     return sum / cone.rays * cone.intensity;
 }
 
-/// What both methods give: visibility in red, then the mean open direction in world space.
+/// Returns the output of both methods: visibility in red, then the mean open direction in world
+/// space.
 fn finished(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>, found: Obscured) -> vec4<f32> {
     var share = found.share;
     if CONE {

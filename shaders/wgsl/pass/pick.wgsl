@@ -1,7 +1,7 @@
-// Picking: which object is seen at one pixel, and its depth.
+// Picking: finds the visible object at one pixel, and its depth.
 //
-// The target is one texel, and the frame's clip space is that of the picked pixel alone. Positions
-// and masks are those of the depth prepass.
+// The target has one texel, and the frame's clip space covers only the picked pixel. Positions and
+// masks are those of the depth prepass.
 
 import package::interface::object::{Instance, world_position, clip_position};
 import package::interface::material::{material, base_color};
@@ -42,7 +42,7 @@ fn vs_mask(
     );
 }
 
-/// Number of the object plus one, since 0 is nothing, and the bits of its reversed depth.
+/// Writes the object's number plus one (0 means nothing) and the bits of its reversed depth.
 @fragment
 fn fs_opaque(vertex: OpaqueVertex) -> @location(0) vec2<u32> {
     return vec2<u32>(vertex.number + 1u, bitcast<u32>(vertex.position.z));

@@ -1,13 +1,13 @@
 // Post: a full-screen pass of point-wise effects, from HDR to the display.
 //
-// Which effects is said at resolution (see interface/epilogue.wgsl): all of them in one pass,
-// or one in each of several. Each pixel reads only itself (textureLoad, no sampler), so the
-// pass can be kept in the tile, or inlined into the pass that makes its input.
+// The effects are chosen at resolution (see interface/epilogue.wgsl): all of them in one pass, or
+// one in each of several passes. Each pixel reads only itself (textureLoad, no sampler). The pass
+// can therefore stay in tile memory, or be inlined into the pass that produces its input.
 
 import package::interface::epilogue::epilogue;
 import package::lib::fullscreen::fullscreen_position;
 
-/// Pre-exposed linear Rec.709, single-sampled, of the size of the target.
+/// Pre-exposed linear Rec.709, single-sampled, with the size of the target.
 @group(0) @binding(0) var hdr: texture_2d<f32>;
 
 @vertex

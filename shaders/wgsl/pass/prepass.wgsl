@@ -1,9 +1,8 @@
 // Depth prepass: the depth of the visible surfaces, before anything is shaded.
 //
-// The color pass then shades each pixel once, with depth compare Equal. That asks for the
-// same depth to the last bit, so both passes take the position from
-// interface/object.wgsl and mark it @invariant, and masked geometry decides on the same alpha.
-// Reversed-Z, compare Greater, cleared to 0.
+// The color pass then shades each pixel once, with depth compare Equal. This requires bit-identical
+// depth, so both passes compute the position in interface/object.wgsl and mark it @invariant.
+// Masked geometry uses the same alpha test. Reversed-Z, compare Greater, cleared to 0.
 
 import package::interface::object::{Instance, world_position, clip_position};
 import package::interface::material::{material, base_color};
@@ -43,7 +42,7 @@ fn vs_mask(
     );
 }
 
-/// Writes no color: it only removes what the mask removes.
+/// Writes no color and discards masked fragments.
 @fragment
 fn fs_mask(vertex: MaskVertex) {
     let alpha = base_color(vertex.uv, vec4<f32>(1.0, 1.0, 1.0, vertex.alpha)).a;
@@ -52,18 +51,18 @@ fn fs_mask(vertex: MaskVertex) {
     }
 }
 
-/// There is no layer before the one that is peeled.
+/// True for the first layer, which has no previous layer.
 override FIRST_LAYER: bool = false;
 
-/// Depth of what is opaque, reversed. Loaded as unfilterable floats: OpenGL loads no texels of
-/// depth textures as such.
+/// Reversed depth of opaque surfaces. Bound as unfilterable floats, because OpenGL cannot load
+/// texels of depth textures.
 @group(0) @binding(49) var opaque_depth: texture_2d<f32>;
 @group(0) @binding(50) var opaque_depth_samples: texture_multisampled_2d<f32>;
-/// Depth of the layer before.
+/// Depth of the previous layer.
 @group(0) @binding(51) var nearer_layer: texture_2d<f32>;
 @group(0) @binding(52) var nearer_layer_samples: texture_multisampled_2d<f32>;
 
-/// Removes what belongs to a layer before, what is hidden, and what covers nothing.
+/// Discards fragments of earlier layers, hidden fragments, and fully transparent fragments.
 fn peel(vertex: MaskVertex, hidden: f32, nearer: f32) {
     let alpha = base_color(vertex.uv, vec4<f32>(1.0, 1.0, 1.0, vertex.alpha)).a;
     let peeled = !FIRST_LAYER && vertex.position.z >= nearer;
@@ -72,7 +71,7 @@ fn peel(vertex: MaskVertex, hidden: f32, nearer: f32) {
     }
 }
 
-/// A layer of blended surfaces.
+/// Draws a layer of blended surfaces.
 @fragment
 fn fs_peel(vertex: MaskVertex) {
     let texel = vec2<i32>(vertex.position.xy);
@@ -80,7 +79,7 @@ fn fs_peel(vertex: MaskVertex) {
     peel(vertex, hidden, textureLoad(nearer_layer, texel, 0).r);
 }
 
-/// A layer of blended surfaces, sample by sample.
+/// Draws a layer of blended surfaces, per sample.
 @fragment
 fn fs_peel_samples(vertex: MaskVertex, @builtin(sample_index) index: u32) {
     let texel = vec2<i32>(vertex.position.xy);

@@ -1,9 +1,10 @@
-// Reflections in what the picture shows: each pixel's mirrored ray is followed through the
-// structure of the scene, and what it meets is taken from the picture of the frame before.
+// Screen-space reflections: traces each pixel's mirrored ray through the depth pyramid, and reads
+// the color of the hit from the previous frame.
 //
-// The result is radiance times how much it counts, and that in alpha: 0 where the ray met nothing,
-// left the picture, or met what the earlier frame did not show. The rest is image light. Beside it
-// is how long the ray's way was, by which a rough surface blurs.
+// The output is radiance times its weight, with the weight in alpha. The weight is 0 if the ray
+// hits nothing, leaves the screen, or hits a point that the previous frame did not show. The
+// environment provides the rest. A second output holds the length of the ray, which controls the
+// blur of rough surfaces.
 
 import package::interface::frame::frame;
 import package::interface::material::{TRAIT_UNLIT, material_has, metallic_roughness};
@@ -28,24 +29,24 @@ import package::shading::vertex::{
 /// Settings. Mirrored by `layout::ReflectionUniforms`.
 struct ReflectionUniforms {
     projection: Projection,
-    /// View space of this frame to clip space of the frame before.
+    /// View space of this frame to clip space of the previous frame.
     earlier_clip_from_view: mat4x4<f32>,
-    /// How far behind its front a surface is still met, in m.
+    /// Thickness assumed behind visible surfaces, in m.
     thickness_m: f32,
-    /// Where rays begin, in m along them.
+    /// Distance along the ray at which tracing begins, in m.
     bias_m: f32,
-    /// Where they end.
+    /// Distance along the ray at which tracing ends, in m.
     reach_m: f32,
-    /// Texels from step to step.
+    /// Distance between steps, in texels.
     stride: f32,
-    /// Perceptual roughness from which on nothing is traced.
+    /// Maximum perceptual roughness that is traced.
     most_roughness: f32,
-    /// Exposure of this frame over that of the frame before.
+    /// Exposure of this frame divided by that of the previous frame.
     exposure_ratio: f32,
 }
 
 @group(0) @binding(22) var<uniform> settings: ReflectionUniforms;
-/// Pre-exposed radiance of the frame before.
+/// Pre-exposed radiance of the previous frame.
 @group(0) @binding(41) var earlier: texture_2d<f32>;
 /// Linear filter, clamp to edge.
 @group(0) @binding(42) var earlier_sampler: sampler;
@@ -63,34 +64,34 @@ fn vs_main(
     return surface_vertex(instance, position, normal, tangent, vec4<f32>(uv0, uv1), color);
 }
 
-/// A ray in the picture: (x, y) in texels of the structure and depth at its start, and what they
-/// change by to its end.
+/// Ray on the screen: (x, y) in texels of the depth pyramid and depth at its start, and the
+/// difference to its end.
 struct PictureRay {
     start: vec3<f32>,
     way: vec3<f32>,
 }
 
-/// (x, y) in texels and depth of a position in view space.
+/// Returns (x, y) in texels and depth of a view-space position.
 fn in_picture(position: vec3<f32>) -> vec3<f32> {
     let ndc = ndc_from_view(position, settings.projection);
     let size = vec2<f32>(textureDimensions(structure));
     return vec3<f32>(uv_from_clip(ndc.xy) * size, ndc.z);
 }
 
-/// The place in view space at this share of the ray.
+/// Returns the view-space position at this share of the ray.
 fn place_on(ray: PictureRay, share: f32) -> vec3<f32> {
     let at = ray.start + share * ray.way;
     return view_position(structure_ndc(at.xy), at.z, settings.projection);
 }
 
-/// A share of a ray, and whether something is met there.
+/// Share of a ray, and whether there is a hit.
 struct Meeting {
     share: f32,
     met: bool,
 }
 
-/// Where between two shares of a ray it meets the surface that its later end is behind of: halved
-/// until both are in one texel, in which the depth says where.
+/// Finds the hit between two shares of a ray, of which the later is behind the surface. Bisects
+/// until both are in the same texel, and interpolates depth there.
 fn meeting_between(ray: PictureRay, before: f32, here: f32) -> f32 {
     var low = before;
     var high = here;
@@ -108,7 +109,7 @@ fn meeting_between(ray: PictureRay, before: f32, here: f32) -> f32 {
     return share_at_depth(surface, ray.start.z, ray.way.z, low, high);
 }
 
-/// Follows a ray from `origin`, on a surface of that normal, in view space.
+/// Traces a ray from `origin`, on a surface with this normal, in view space.
 fn follow(ray: PictureRay, origin: vec3<f32>, normal: vec3<f32>, jitter: f32) -> Meeting {
     let size = vec2<f32>(textureDimensions(structure));
     let end = share_in_picture(ray.start.xy, ray.way.xy, size);
@@ -124,7 +125,7 @@ fn follow(ray: PictureRay, origin: vec3<f32>, normal: vec3<f32>, jitter: f32) ->
         let here_z = view_z(at.z, row);
         let texel = vec2<i32>(min(floor(at.xy), size - 1.0));
         let depth = structure_depth(texel);
-        // Depth 0 is no place (hard case 30).
+        // Depth 0 is not a position (hard case 30).
         if depth > 0.0
             && ray_meets(before_z, here_z, view_z(depth, row), settings.thickness_m) {
             let met = structure_position(texel, depth, settings.projection);
@@ -142,18 +143,18 @@ fn follow(ray: PictureRay, origin: vec3<f32>, normal: vec3<f32>, jitter: f32) ->
     return Meeting(1.0, false);
 }
 
-/// What a pixel's ray found.
+/// Result of a pixel's ray.
 struct Found {
-    /// Radiance times how much it counts, and that.
+    /// Radiance times its weight, and the weight.
     @location(0) radiance: vec4<f32>,
-    /// Length of its way in m.
+    /// Length of the ray in m.
     @location(1) way_m: f32,
 }
 
-/// Where a ray found nothing: what neighbours found is blurred there as if it were so far away.
+/// Result without a hit; the length is used when the results of neighbors are blurred.
 const NOTHING: Found = Found(vec4<f32>(0.0), 1.0);
 
-/// What the frame before shows of a place in view space, and how much that counts.
+/// Returns the color of the previous frame at a view-space position, and its weight.
 fn earlier_radiance(place: vec3<f32>) -> vec4<f32> {
     let clip = settings.earlier_clip_from_view * vec4<f32>(place, 1.0);
     if !(clip.w > 1e-6) {
@@ -162,7 +163,7 @@ fn earlier_radiance(place: vec3<f32>) -> vec4<f32> {
     let uv = uv_from_clip(clip.xy / clip.w);
     let fade = contact_fade(uv);
     let seen = textureSampleLevel(earlier, earlier_sampler, uv, 0.0).rgb;
-    // What is broken there stays there.
+    // Ignores NaN and infinity of the previous frame.
     if !(fade > 0.0) || !all_finite3(seen) {
         return vec4<f32>(0.0);
     }

@@ -1,24 +1,23 @@
-// Shadow map: depth of the scene as a light sees it, or moments of it.
+// Shadow map: depth of the scene from a light, or its moments.
 //
-// Reversed-Z (nearest 1, cleared to 0, compare Greater). Opaque geometry reads nothing but
-// positions; alpha-masked geometry also reads the material, to leave the holes open. Group 0
-// holds the light's own view and not the frame's, so that cascades and local lights are more
-// draws and no more shaders. Slope-scaled bias belongs to the pipeline; the offset along the
-// normal is applied by the receiver (lib/shadow.wgsl). Moments (lib/shadow_moments.wgsl) are
-// of depth along the light, which is linear whatever the view's perspective.
+// Reversed-Z (nearest 1, cleared to 0, compare Greater). Opaque geometry reads only positions;
+// alpha-masked geometry also reads the material for its alpha test. Group 0 holds the light's view
+// instead of the frame's, so that cascades and punctual lights share the shaders. The pipeline sets
+// the slope-scaled bias; the receiver applies the normal offset (lib/shadow.wgsl). Moments
+// (lib/shadow_moments.wgsl) use linear depth along the light, for any projection.
 
 import package::interface::object::{Instance, world_position};
 import package::interface::material::{material, base_color};
 import package::lib::fullscreen::fullscreen_position;
 import package::lib::shadow_moments::depth_moments;
 
-/// The view a shadow map is drawn with. Mirrored by `layout::ShadowViewUniforms`.
+/// View that draws a shadow map. Mirrored by `layout::ShadowViewUniforms`.
 struct ShadowViewUniforms {
-    /// World to the light's clip space, reversed-Z.
+    /// World to light clip space, reversed-Z.
     clip_from_world: mat4x4<f32>,
-    /// World to depth away from the light: 0 at the near end of the map, 1 at the far end.
+    /// World to linear depth: 0 at the near end of the map, 1 at the far end.
     linear_depth: vec4<f32>,
-    /// Exponent of the warp of moments.
+    /// Exponent of the depth warp for moments.
     exponent: f32,
 }
 
@@ -26,8 +25,8 @@ struct ShadowViewUniforms {
 
 struct OpaqueVertex {
     @builtin(position) position: vec4<f32>,
-    /// Linear depth. At the middle of a texel that a triangle covers in part it would be that of a
-    /// place beside the triangle, which the warp makes of any size: it is taken where it covers.
+    /// Linear depth, sampled at the centroid. At the center of a partly covered texel it would be
+    /// extrapolated beyond the triangle, and the warp would amplify the error.
     @location(2) @interpolate(perspective, centroid) depth: f32,
 }
 
@@ -35,11 +34,11 @@ struct MaskVertex {
     @builtin(position) position: vec4<f32>,
     @location(0) uv: vec4<f32>,
     @location(1) alpha: f32,
-    /// Linear depth, taken where the triangle covers the texel.
+    /// Linear depth, sampled at the centroid.
     @location(2) @interpolate(perspective, centroid) depth: f32,
 }
 
-/// The far end, over a map that is drawn again.
+/// Clears a map to the far end before it is drawn again.
 @vertex
 fn vs_far(@builtin(vertex_index) index: u32) -> OpaqueVertex {
     return OpaqueVertex(fullscreen_position(index, 0.0), 1.0);
@@ -73,20 +72,20 @@ fn vs_mask(
     );
 }
 
-/// Removes what the mask removes.
+/// Discards masked fragments.
 fn cut(uv: vec4<f32>, alpha: f32) {
     if base_color(uv, vec4<f32>(1.0, 1.0, 1.0, alpha)).a < material.alpha_cutoff {
         discard;
     }
 }
 
-/// Writes no color.
+/// Writes no color and discards masked fragments.
 @fragment
 fn fs_mask(vertex: MaskVertex) {
     cut(vertex.uv, vertex.alpha);
 }
 
-/// Moments of the fragment's depth.
+/// Returns the moments of the fragment's depth.
 fn moments(depth: f32) -> vec4<f32> {
     let found = depth_moments(depth, dpdx(depth), dpdy(depth), shadow_view.exponent);
     return vec4<f32>(found, 0.0, 0.0);

@@ -1,24 +1,24 @@
-// Moments of a shadow map, blurred along one axis or halved.
+// Blurs the moments of a shadow map along one axis, or halves them.
 
 import package::lib::fullscreen::fullscreen_position;
 
-/// A blur along one axis. Mirrored by `layout::ShadowBlurUniforms`.
+/// Settings of a blur along one axis. Mirrored by `layout::ShadowBlurUniforms`.
 struct ShadowBlurUniforms {
-    /// One texel along the axis: (1, 0) or (0, 1).
+    /// Step of one texel along the axis: (1, 0) or (0, 1).
     step: vec2<i32>,
     /// -1 / (2 σ²) of the Gaussian, σ in texels.
     falloff: f32,
-    /// First and last texel of the map: beyond lies its edge.
+    /// First texel of the map; reads are clamped to it.
     first: vec2<i32>,
-    /// See `first`.
+    /// Last texel of the map; reads are clamped to it.
     last: vec2<i32>,
 }
 
-/// Taps on each side.
+/// Number of taps on each side.
 override REACH: i32 = 1;
 
 @group(0) @binding(0) var<uniform> shadow_blur: ShadowBlurUniforms;
-/// A layer, a level of it.
+/// One mip level of one layer.
 @group(0) @binding(1) var moments: texture_2d<f32>;
 
 @vertex
@@ -26,7 +26,7 @@ fn vs_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(index, 0.0);
 }
 
-/// A Gaussian along one axis; beyond the map's edge lies the edge.
+/// Applies a Gaussian along one axis, clamped to the map's edge.
 @fragment
 fn fs_blur(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let center = vec2<i32>(at.xy);
@@ -41,7 +41,7 @@ fn fs_blur(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     return vec4<f32>(sum / weights, 0.0, 0.0);
 }
 
-/// The mean of four texels.
+/// Averages four texels.
 @fragment
 fn fs_halve(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
     let last = vec2<i32>(textureDimensions(moments)) - 1;

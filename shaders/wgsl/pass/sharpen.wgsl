@@ -1,5 +1,5 @@
-// Sharpens a picture by contrast (lib/sharpen.wgsl): encoded codes after upscaling, or radiance
-// after temporal anti-aliasing, of which what is brighter than white is left as it is.
+// Sharpens an image by contrast (lib/sharpen.wgsl). The input is the encoded image after upscaling,
+// or radiance after temporal anti-aliasing, where colors brighter than white stay unchanged.
 
 import package::lib::fullscreen::fullscreen_position;
 import package::lib::sharpen::sharpened;
@@ -7,11 +7,11 @@ import package::lib::srgb::linear_from_srgb;
 
 /// Settings. Mirrored by `layout::SharpenUniforms`.
 struct SharpenUniforms {
-    /// 0 to 1.
+    /// Strength, 0…1.
     @size(16) strength: f32,
 }
 
-/// True decodes what was sharpened encoded, for an sRGB target.
+/// True decodes the encoded result, for an sRGB target.
 override DECODE: bool = false;
 
 @group(0) @binding(0) var<uniform> sharpening: SharpenUniforms;
@@ -22,7 +22,7 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(vertex, 0.0);
 }
 
-/// A texel, or the nearest at the border.
+/// Returns a texel, clamped to the border.
 fn texel(at: vec2<i32>) -> vec4<f32> {
     let last = vec2<i32>(textureDimensions(picture)) - 1;
     return textureLoad(picture, clamp(at, vec2<i32>(0), last), 0);

@@ -1,11 +1,11 @@
-// Sky: what is seen where there is no geometry.
+// Sky: the background where there is no geometry.
 //
-// A full-screen triangle on the far plane, drawn after the opaque geometry with depth compare
-// GreaterEqual and no depth write, so that only uncovered pixels are shaded. The background
-// is an environment map, a clear sky with a sun disc (lib/sky.wgsl), or one radiance.
+// It draws a full-screen triangle on the far plane after the opaque geometry, with depth compare
+// GreaterEqual and no depth write, so that only uncovered pixels are shaded. The background is an
+// environment map, a clear sky with a sun disc (lib/sky.wgsl), or a constant radiance.
 //
-// Features: FOG, it is seen through fog, from very far away; SUN_HALO, the sun's disc and halo are
-// drawn over it, all but black.
+// Features: FOG applies fog at a very large distance. SUN_HALO draws the sun's disc and halo over
+// all backgrounds except black.
 
 import package::interface::epilogue::epilogue;
 @if(FOG)
@@ -24,17 +24,17 @@ import package::lib::sky::{sun_disc, sun_disc_radiance};
 
 /// Coefficients of the clear sky, pre-exposed. Mirrored by `layout::SkyUniforms`.
 struct SkyUniforms {
-    /// Perez' A…E for (x, y, Y) in xyz.
+    /// Perez coefficients A…E for (x, y, Y) in xyz.
     perez: array<vec4<f32>, 5>,
-    /// (x, y, Y) at the zenith over Perez' function there; Y in pre-exposed nits.
+    /// (x, y, Y) at the zenith divided by the Perez function there; Y in pre-exposed nits.
     zenith: vec3<f32>,
-    /// 1 - cos of the angular radius of the sun's disc, where it has a halo.
+    /// 1 - cos of the angular radius of the sun's disc, if it has a halo.
     disc_versine: f32,
-    /// Pre-exposed radiance below the horizon, or everywhere where it is constant; linear Rec.709.
+    /// Pre-exposed radiance below the horizon, or of the whole constant sky; linear Rec.709.
     ground: vec3<f32>,
-    /// One over the difference between the halo's versine and the disc's.
+    /// Reciprocal of the difference between the versines of the halo and of the disc.
     per_halo: f32,
-    /// Unit vector toward the sun that the sky was made for.
+    /// Unit vector toward the sun for which the coefficients were computed.
     toward_sun: vec3<f32>,
     /// Exponent of the halo's falloff.
     halo_falloff: f32,
@@ -47,8 +47,8 @@ struct SkyVertex {
     @location(0) ray: vec3<f32>,
 }
 
-/// Direction through a point of the screen, any length: far point minus near point in
-/// homogeneous coordinates, which holds for perspective and orthographic cameras and for a
+/// Returns the direction through a point of the screen, not normalized: far point minus near point
+/// in homogeneous coordinates. This is correct for perspective and orthographic cameras, and for a
 /// far plane at infinity, where the far point's w is zero.
 fn world_ray(clip: vec2<f32>) -> vec3<f32> {
     let far = frame.world_from_clip * vec4<f32>(clip, 0.0, 1.0);
@@ -62,8 +62,8 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> SkyVertex {
     return SkyVertex(position, world_ray(position.xy));
 }
 
-/// `radiance` with the sun's disc and halo in front of it. The disc is as bright as Filament's, 4π
-/// times the illuminance.
+/// Adds the sun's disc and halo to `radiance`. The disc is as bright as Filament's, 4π times the
+/// illuminance.
 @if(SUN_HALO)
 fn with_sun(vertex: SkyVertex, radiance: vec3<f32>) -> vec3<f32> {
     let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
@@ -77,7 +77,7 @@ fn with_sun(vertex: SkyVertex, radiance: vec3<f32>) -> vec3<f32> {
     return radiance;
 }
 
-/// The color to write where the background has this radiance.
+/// Returns the output color for this background radiance.
 fn seen(vertex: SkyVertex, radiance: vec3<f32>) -> vec4<f32> {
     var color = vec4<f32>(saturate_half3(radiance), 1.0);
     @if(FOG) color =
@@ -85,7 +85,7 @@ fn seen(vertex: SkyVertex, radiance: vec3<f32>) -> vec4<f32> {
     return epilogue(color, vertex.position.xy);
 }
 
-/// The environment map.
+/// Draws the environment map.
 @fragment
 fn fs_environment(vertex: SkyVertex) -> @location(0) vec4<f32> {
     let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
@@ -94,7 +94,7 @@ fn fs_environment(vertex: SkyVertex) -> @location(0) vec4<f32> {
     return seen(vertex, with_sun(vertex, texel * frame.environment_scale));
 }
 
-/// The clear sky and the sun.
+/// Draws the clear sky and the sun.
 @fragment
 fn fs_procedural(vertex: SkyVertex) -> @location(0) vec4<f32> {
     let d = normalize_or(vertex.ray, vec3<f32>(0.0, 1.0, 0.0));
@@ -109,14 +109,13 @@ fn fs_procedural(vertex: SkyVertex) -> @location(0) vec4<f32> {
     return seen(vertex, with_sun(vertex, color));
 }
 
-/// The same radiance everywhere.
+/// Draws a constant radiance.
 @fragment
 fn fs_constant(vertex: SkyVertex) -> @location(0) vec4<f32> {
     return seen(vertex, with_sun(vertex, sky.ground));
 }
 
-/// Black, where there is nothing to see: a clear value cannot go through the epilogue, which
-/// may depend on the pixel.
+/// Draws black. A clear value cannot pass through the epilogue, which may depend on the pixel.
 @fragment
 fn fs_black(vertex: SkyVertex) -> @location(0) vec4<f32> {
     return seen(vertex, vec3<f32>(0.0));

@@ -1,11 +1,11 @@
-// Structure: the depth of the scene as a pyramid, for effects that look around in it. Level 0 is
-// drawn by the shader of the depth prepass; each further one keeps a texel of four.
+// Depth pyramid of visible surfaces, for screen-space effects. The shader of the depth prepass
+// draws level 0; each further level keeps one texel of four.
 
 import package::lib::depth_pyramid::finer_texel;
 import package::lib::fullscreen::fullscreen_position;
 
-/// The level above. Loaded as an unfilterable float: OpenGL loads no texels of depth textures as
-/// such.
+/// Previous level. Bound as an unfilterable float, because OpenGL cannot load texels of depth
+/// textures.
 @group(0) @binding(0) var finer: texture_2d<f32>;
 
 @vertex
@@ -13,7 +13,7 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(vertex, 0.0);
 }
 
-/// The next level. A side of one texel has no second one.
+/// Computes the next level. A side of one texel has no second texel.
 @fragment
 fn fs_level(@builtin(position) position: vec4<f32>) -> @builtin(frag_depth) f32 {
     let last = vec2<i32>(textureDimensions(finer)) - 1;

@@ -1,8 +1,8 @@
-// Temporal anti-aliasing: each frame is seen through other places of its pixels, and is added to
-// what the frames before have come to, where that is still to be believed.
+// Temporal anti-aliasing: each frame has another sub-pixel jitter and is blended with the valid
+// history.
 //
-// A pixel is found in the frame before by its depth and by both cameras. What is there is held to
-// the colors about the pixel now, so that what was uncovered or has changed is let go.
+// A pixel is reprojected into the previous frame by its depth and both cameras. The history is
+// clipped to the colors around the pixel, which rejects disoccluded and changed surfaces.
 
 import package::lib::fullscreen::fullscreen_position;
 import package::lib::luminance::luminance;
@@ -15,49 +15,51 @@ import package::lib::taa::{
 
 /// Settings. Mirrored by `layout::TaaUniforms`.
 struct TaaUniforms {
-    /// Clip space of this frame to that of the frame before, both without jitter.
+    /// Clip space of this frame to clip space of the previous frame, both without jitter.
     earlier_clip_from_clip: mat4x4<f32>,
     /// Weights of a texel and its neighbors, row by row from the top left: eight in two vectors,
     /// and the ninth in x of the last.
     weights: array<vec4<f32>, 3>,
-    /// Share of this frame in the sum; 1 where there is none before.
+    /// Weight of this frame in the blend; 1 without a history.
     feedback: f32,
-    /// Deviations that a box by variance is wide to either side.
+    /// Half width of the variance clipping box, in standard deviations.
     variance_gamma: f32,
-    /// Exposure of this frame over that of the frame before.
+    /// Exposure of this frame divided by that of the previous frame.
     exposure_ratio: f32,
 }
 
-/// What the box about a pixel's colors is made of.
+/// Construction of the color box around a pixel.
 override BOX: u32 = 0u;
 const BOX_BOUNDS: u32 = 0u;
 const BOX_VARIANCE: u32 = 1u;
 const BOX_BOTH: u32 = 2u;
-/// How the sum is held to the box.
+/// Method that clips the history to the box.
 override CLIPPING: u32 = 0u;
 const CLIP_ACCURATE: u32 = 0u;
 const CLIP_CLAMP: u32 = 1u;
 const CLIP_NONE: u32 = 2u;
-/// The box is one of luma and chroma.
+/// Uses a box in luma and chroma.
 override YCOCG: bool = false;
-/// The earlier picture is read by Catmull-Rom's spline, else bilinearly.
+/// Reads the history with a Catmull-Rom filter, otherwise bilinearly.
 override FILTER_HISTORY: bool = true;
-/// This frame's colors are those at the middles of pixels, filtered, else as they were drawn.
+/// Filters this frame's colors to pixel centers, otherwise uses them as drawn.
 override FILTER_INPUT: bool = true;
-/// The share of this frame is less where brightness changes.
+/// Reduces the weight of this frame where brightness changes.
 override PREVENT_FLICKERING: bool = false;
-/// The earlier picture is read where the pixel was, else at the same pixel.
+/// Reprojects the history, otherwise reads it at the same pixel.
 override REPROJECT: bool = true;
-/// Bright samples do not outweigh dark ones, else each counts by its light.
+/// Compresses the range so that bright samples do not dominate; otherwise weights samples by
+/// radiance.
 override COMPRESS: bool = true;
 
 @group(0) @binding(0) var<uniform> temporal: TaaUniforms;
 @group(0) @binding(1) var hdr: texture_2d<f32>;
 @group(0) @binding(2) var depth: texture_2d<f32>;
-/// Way to the place before, in texture coordinates, of what moves, times a count, and that count.
+/// Motion vectors of moving objects in texture coordinates, summed over samples, and the number of
+/// samples.
 @if(VELOCITY)
 @group(0) @binding(5) var velocity: texture_2d<f32>;
-/// What the frames before have come to.
+/// History.
 @group(0) @binding(3) var earlier: texture_2d<f32>;
 /// Linear filter, clamp to edge.
 @group(0) @binding(4) var earlier_sampler: sampler;
@@ -67,8 +69,8 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
     return fullscreen_position(vertex, 0.0);
 }
 
-/// Where in the picture of the frame before a texel was, (0, 0) at its top left; z is 0 where that
-/// picture does not show it.
+/// Returns the position of a texel in the previous frame, with (0, 0) at its top left; z is 0 if
+/// the previous frame does not show it.
 fn earlier_place(texel: vec2<i32>, size: vec2<f32>) -> vec3<f32> {
     let uv = (vec2<f32>(texel) + 0.5) / size;
     let ndc = vec2<f32>(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y);
@@ -79,15 +81,16 @@ fn earlier_place(texel: vec2<i32>, size: vec2<f32>) -> vec3<f32> {
     return shown_place(uv, place, clip.w > 1e-9);
 }
 
-/// A place in the picture of the frame before; z is 0 where that does not show it.
+/// Returns a position in the previous frame; z is 0 if the previous frame does not show it.
 fn shown_place(uv: vec2<f32>, place: vec2<f32>, ahead: bool) -> vec3<f32> {
     let shown = ahead && all(place >= vec2<f32>(0.0)) && all(place <= vec2<f32>(1.0));
     return select(vec3<f32>(uv, 1.0), vec3<f32>(place, f32(shown)), REPROJECT);
 }
 
-/// The same where something may move. Behind an edge, where the nearest surface around a texel is
-/// nearer by a quarter, that one says by how much, so that the edge goes with it. Not everywhere:
-/// what is nearer on a round body moves more, and its outline would run ahead.
+/// Returns the position of a texel in the previous frame, with motion vectors. At an edge, where
+/// the nearest neighboring surface is nearer by a quarter, it uses the motion vector of that
+/// surface, so that the edge moves with it. Elsewhere this would displace the outline of round
+/// objects.
 @if(VELOCITY)
 fn moved_place(texel: vec2<i32>, last: vec2<i32>) -> vec3<f32> {
     let own = textureLoad(depth, texel, 0).r;
@@ -109,14 +112,14 @@ fn moved_place(texel: vec2<i32>, last: vec2<i32>) -> vec3<f32> {
     return shown_place(uv, select(still.xy + aside, way, moves), moves || still.z > 0.0);
 }
 
-/// The same where nothing moves.
+/// Returns the position of a texel in the previous frame, without motion vectors.
 @else
 fn moved_place(texel: vec2<i32>, last: vec2<i32>) -> vec3<f32> {
     return earlier_place(texel, vec2<f32>(last + 1));
 }
 
-/// The earlier picture at a place, times this frame's exposure over that one's. Of the sixteen
-/// texels of the spline the four in the corners are left out, and pairs are read at once.
+/// Reads the history at a position, scaled by the ratio of exposures. The four corners of the
+/// spline's sixteen texels are left out, and pairs are read at once.
 fn earlier_color(place: vec2<f32>) -> vec3<f32> {
     let size = vec2<f32>(textureDimensions(earlier));
     var sum = vec4<f32>(0.0);
@@ -147,12 +150,12 @@ fn earlier_color(place: vec2<f32>) -> vec3<f32> {
     return sum.rgb * temporal.exposure_ratio;
 }
 
-/// A color in the space that boxes are of.
+/// Converts a color to the space of the box.
 fn boxed(c: vec3<f32>) -> vec3<f32> {
     return select(c, ycocg_from_rgb(c), YCOCG);
 }
 
-/// `history`, held to the colors of the nine texels `near`, toward `filtered`.
+/// Clips `history` to the colors of the nine texels `near`, toward `filtered`.
 fn held(history: vec3<f32>, filtered: vec3<f32>, near: array<vec3<f32>, 9>) -> vec3<f32> {
     if CLIPPING == CLIP_NONE {
         return history;
@@ -163,7 +166,7 @@ fn held(history: vec3<f32>, filtered: vec3<f32>, near: array<vec3<f32>, 9>) -> v
     }
     let cross_low = min(s[4], min(min(s[1], s[3]), min(s[5], s[7])));
     let cross_high = max(s[4], max(max(s[1], s[3]), max(s[5], s[7])));
-    // Half of what corners add.
+    // Corners contribute half of their extension.
     var low = 0.5 * (cross_low + min(cross_low, min(min(s[0], s[2]), min(s[6], s[8]))));
     var high = 0.5 * (cross_high + max(cross_high, max(max(s[0], s[2]), max(s[6], s[8]))));
     if BOX != BOX_BOUNDS {
@@ -194,7 +197,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     filtered = select(near[4], filtered, FILTER_INPUT);
     let place = moved_place(texel, last);
     let before = earlier_color(place.xy);
-    // What is broken in the sum does not stay there.
+    // Rejects NaN and infinity, which would otherwise stay in the history.
     let usable = all_finite3(before) && place.z > 0.0;
     let history = held(select(filtered, max(before, vec3<f32>(0.0)), usable), filtered, near);
     var share = temporal.feedback;
@@ -204,7 +207,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let even = mix(history, filtered, share);
     let weighted = expand_range(mix(compress_range(history), compress_range(filtered), share));
     let sum = select(filtered, select(even, weighted, COMPRESS), usable && share < 1.0);
-    // A device that cuts bits off would darken the sum a little each frame.
+    // Devices that truncate would darken the history a little each frame.
     let alpha = textureLoad(hdr, texel, 0).a;
     return quantize_rgba16float(vec4<f32>(saturate_half3(sum), alpha), false);
 }

@@ -1,12 +1,12 @@
-// Averages the samples of radiance as a display would show them: a sample counts the less the
-// brighter it is, so that an edge before something bright is as smooth as any (Karis, "Tone
-// mapping", 2013; Filament's custom resolve). Samples that are alike stay what they are.
+// MSAA resolve that averages samples approximately as displayed. Brighter samples have lower
+// weight, so that edges next to bright areas are as smooth as others (Karis, "Tone mapping", 2013;
+// Filament's custom resolve). Equal samples stay unchanged.
 
 import package::lib::bloom::firefly_weight;
 import package::lib::fullscreen::fullscreen_position;
 import package::lib::numerics::saturate_half3;
 
-/// How many samples a texel has: OpenGL ES cannot ask.
+/// Number of samples per texel: OpenGL ES cannot query it.
 override SAMPLES: i32 = 4;
 
 @group(0) @binding(0) var hdr_samples: texture_multisampled_2d<f32>;

@@ -1,6 +1,6 @@
-// Upscaling of a finished picture: bilinear, or along its edges (lib/upscale.wgsl).
+// Upscaling of the final image: bilinear, or edge-adaptive (lib/upscale.wgsl).
 //
-// Input and what is filtered are encoded as sRGB, since that is where steps are even.
+// Input and filtering are sRGB encoded, because their steps are perceptually uniform.
 
 import package::lib::fullscreen::{fullscreen_position, uv_from_clip};
 import package::lib::luminance::luminance;
@@ -34,7 +34,7 @@ fn fs_bilinear(vertex: UpscaleVertex) -> @location(0) vec4<f32> {
     return decoded(textureSampleLevel(picture, picture_sampler, vertex.uv, 0.0).rgb);
 }
 
-/// The number of a texel of the four by four, of which the first is (-1, -1).
+/// Returns the index of a texel in the 4×4 neighborhood, which starts at (-1, -1).
 fn place_of(x: i32, y: i32) -> i32 {
     return (y + 1) * 4 + x + 1;
 }

@@ -1,15 +1,14 @@
-// Velocity: where in the picture of the frame before the surfaces of what moves were.
+// Velocity: motion vectors of moving surfaces.
 //
-// Drawn over the depth of the visible surfaces where it is equal, as the color pass is, and with
-// the same position to the bit. Both clip positions come from matrices that were joined in f64,
-// without jitter. The last number counts samples: an average over some that moved and some that did
-// not, over it, is the mean of those that did.
+// It is drawn with depth compare Equal, like the color pass, and computes bit-identical positions.
+// Both clip positions come from matrices that were multiplied in f64, without jitter. The last
+// component counts samples. The average over moving and static samples, divided by the count, is
+// therefore the mean of the moving ones.
 
 import package::interface::material::{material, base_color};
 import package::interface::object::{Instance, world_position, clip_position};
 
-/// Clip space of this frame and of the one before, from model space. Mirrored by
-/// `layout::MotionUniforms`.
+/// Model-to-clip matrices of this and the previous frame. Mirrored by `layout::MotionUniforms`.
 struct MotionUniforms {
     clip_from_model: mat4x4<f32>,
     earlier_clip_from_model: mat4x4<f32>,
@@ -43,8 +42,8 @@ fn vs_main(
     );
 }
 
-/// From texture coordinates here to those before, and 1. Where the place was behind the eye it was
-/// nowhere in the picture.
+/// Returns the vector from texture coordinates here to those in the previous frame, and 1.
+/// Positions behind the previous eye have no coordinates.
 fn velocity(vertex: VelocityVertex) -> vec4<f32> {
     let now = vertex.now.xy / vertex.now.z;
     let before = vertex.before.xy / max(vertex.before.z, 1e-6);
@@ -57,7 +56,7 @@ fn fs_opaque(vertex: VelocityVertex) -> @location(1) vec4<f32> {
     return velocity(vertex);
 }
 
-/// What the mask removes has no depth to be equal to, but may lie on a depth of its own kind.
+/// Discards masked fragments, which could otherwise coincide with the depth of another surface.
 @fragment
 fn fs_mask(vertex: VelocityVertex) -> @location(1) vec4<f32> {
     let alpha = base_color(vertex.uv, vec4<f32>(1.0, 1.0, 1.0, vertex.alpha)).a;

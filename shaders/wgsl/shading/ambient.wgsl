@@ -1,7 +1,7 @@
-// The environment as light: what is bound of it, looked up by a direction in the world.
+// The environment as a light source, looked up by world-space direction.
 //
-// Feature ENVIRONMENT_MAP: lobes read the prefiltered cube; without it they see what three
-// bands of spherical harmonics show.
+// With the feature ENVIRONMENT_MAP, lobes read the prefiltered cube; otherwise they use three bands
+// of spherical harmonics.
 
 @if(ENVIRONMENT_MAP)
 import package::interface::environment::environment_level;
@@ -12,7 +12,7 @@ import package::lib::image_light::specular_lod;
 import package::lib::sh::{irradiance_sh, irradiance_sh2, irradiance_sh5, specular_sh};
 import package::shading::quality::{IRRADIANCE_FROM_CUBE, SH_BANDS};
 
-/// The first three bands.
+/// Returns the first three bands.
 fn three_bands() -> array<vec4<f32>, 9> {
     return array<vec4<f32>, 9>(
         frame.sh[0], frame.sh[1], frame.sh[2], frame.sh[3], frame.sh[4],
@@ -20,10 +20,10 @@ fn three_bands() -> array<vec4<f32>, 9> {
     );
 }
 
-/// Pre-exposed irradiance / π on a surface of unit normal n.
+/// Returns pre-exposed irradiance / π on a surface with unit normal n.
 fn ambient_irradiance(n: vec3<f32>) -> vec3<f32> {
     let d = rotate_about_y(n, frame.environment_rotation);
-    // The lobe of roughness 1 about n is the cosine's, so the last level is irradiance / π.
+    // The lobe of roughness 1 equals the cosine lobe, so the last level is irradiance / π.
     @if(ENVIRONMENT_MAP)
     if IRRADIANCE_FROM_CUBE {
         return environment_level(d, frame.roughness_one_lod);
@@ -38,8 +38,8 @@ fn ambient_irradiance(n: vec3<f32>) -> vec3<f32> {
     return irradiance_sh(three_bands(), d);
 }
 
-/// Pre-exposed radiance that a lobe of that perceptual roughness about the unit vector
-/// `direction` gathers.
+/// Returns pre-exposed radiance, filtered by a lobe of this perceptual roughness around the unit
+/// vector `direction`.
 @if(ENVIRONMENT_MAP)
 fn ambient_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
     let d = rotate_about_y(direction, frame.environment_rotation);
@@ -53,7 +53,7 @@ fn ambient_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
     return specular_sh(three_bands(), d, roughness * roughness);
 }
 
-/// The DFG table's three channels (lib/dfg.wgsl).
+/// Returns the three channels of the DFG table (lib/dfg.wgsl).
 fn directional_albedo(nov: f32, roughness: f32) -> vec3<f32> {
     let size = f32(textureDimensions(dfg_table, 0).x);
     return textureSampleLevel(dfg_table, light_sampler, dfg_uv(nov, roughness, size), 0.0).xyz;

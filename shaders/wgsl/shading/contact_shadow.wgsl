@@ -1,6 +1,6 @@
-// Contact shadows of the sun: a short ray through the structure of the scene.
+// Contact shadows of the sun: traces a short ray through the depth pyramid.
 //
-// Feature CONTACT_SHADOWS; without it nothing is in contact.
+// Requires the feature CONTACT_SHADOWS; without it there are no contact shadows.
 
 import package::interface::frame::frame;
 import package::interface::shadow::shadow;
@@ -11,18 +11,18 @@ import package::lib::fullscreen::uv_from_clip;
 import package::shading::object_light::receives_shadows;
 import package::shading::shadow_map::Receiver;
 
-/// Steps of the ray.
+/// Number of steps of the ray.
 override CONTACT_STEPS: u32 = 8u;
 
-/// (u, v, depth) of the picture.
+/// Returns (u, v, depth) on the screen.
 fn screen_uvz(clip: vec4<f32>) -> vec3<f32> {
     return vec3<f32>(uv_from_clip(clip.xy / clip.w), clip.z / clip.w);
 }
 
-/// Share of the sun that no surface close by hides, 0…1. The ray is marched in steps of equal
-/// length in the picture, with a tolerance as deep as a step toward the viewer would be. A texel
-/// has the depth of its middle, so the ray's is taken there too, along the slope of the receiver:
-/// its own surface hides nothing, however large texels are. Nor does what else is in its texel.
+/// Returns the visibility of the sun past nearby surfaces, 0…1. The ray advances in equal steps on
+/// the screen; the depth tolerance is that of a step toward the viewer. A texel holds the depth of
+/// its center, so the ray's depth is evaluated there, along the slope of the receiver. The
+/// receiver's own surface and its texel therefore cast no shadow.
 @if(CONTACT_SHADOWS)
 fn contact_visibility(receiver: Receiver) -> f32 {
     if !receives_shadows() {
@@ -33,7 +33,7 @@ fn contact_visibility(receiver: Receiver) -> f32 {
     let start_clip = frame.clip_from_world * vec4<f32>(receiver.world, 1.0);
     let end_clip = start_clip + frame.clip_from_world * vec4<f32>(way, 0.0);
     let nearer_clip = start_clip + frame.clip_from_world * vec4<f32>(ahead, 0.0);
-    // A ray that passes the eye cannot be followed.
+    // Rays that pass the eye cannot be traced.
     if min(start_clip.w, min(end_clip.w, nearer_clip.w)) <= 0.0 {
         return 1.0;
     }

@@ -1,4 +1,4 @@
-// Light of one source reflected by a surface with all its lobes, or let through: BSDF times cosine.
+// Reflection and transmission of one light by a surface with all its lobes: BSDF times cosine.
 
 @if(SUBSURFACE || CLOTH_SUBSURFACE)
 import package::interface::material::material;
@@ -31,7 +31,7 @@ import package::shading::surface::{film_reflectance, largest_channel};
 @if(DIFFUSE_TRANSMISSION || SUBSURFACE)
 import package::shading::surface::layer_transmittance;
 
-/// The isotropic base; of cloth its specular layer.
+/// Evaluates the isotropic base; for cloth, only its specular layer.
 @if(!ANISOTROPY && !IRIDESCENCE)
 fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     @if(CLOTH_SUBSURFACE) {
@@ -44,7 +44,7 @@ fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     }
 }
 
-/// D · V of the isotropic base.
+/// Evaluates D · V of the isotropic base.
 @if(!ANISOTROPY && IRIDESCENCE)
 fn base_lobe(s: Surface, to_light: real3, h: real3, nol: real) -> f32 {
     let noh = dot(s.base.normal, h);
@@ -61,8 +61,8 @@ fn base_lobe(s: Surface, to_light: real3, h: real3, nol: real) -> f32 {
     return f32(d) * f32(v);
 }
 
-/// D · V of the anisotropic base: the exact terms whatever the quality, as Filament does; there is
-/// no fast form of them.
+/// Evaluates D · V of the anisotropic base. It always uses the exact terms, as in Filament, because
+/// they have no fast form.
 @if(ANISOTROPY)
 fn base_lobe(s: Surface, to_light: real3, h: real3, nol: real) -> f32 {
     let t = real3(s.anisotropy.tangent);
@@ -77,8 +77,8 @@ fn base_lobe(s: Surface, to_light: real3, h: real3, nol: real) -> f32 {
     return d * f32(v);
 }
 
-/// The base with grooves or under a film. Unlike the interface of a dielectric alone, a film may
-/// reflect most of the light: what is scattered below it gets the rest.
+/// Evaluates the base with anisotropy or a thin film. Unlike a dielectric interface, a film may
+/// reflect most of the light; the diffuse layer receives the rest.
 @if(ANISOTROPY || IRIDESCENCE)
 fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     let nol = min(dot(s.base.normal, to_light), 1.0);
@@ -103,7 +103,8 @@ fn reflect_base(s: Surface, to_light: real3) -> vec3<f32> {
     return (diffuse + specular * vec3<f32>(s.base.compensation)) * f32(nol);
 }
 
-/// Light from behind that is scattered through the base and leaves through its layers.
+/// Evaluates light from behind that is scattered through the base and attenuated by the layers
+/// above.
 @if(DIFFUSE_TRANSMISSION)
 fn transmit_light(s: Surface, to_light: real3) -> vec3<f32> {
     let scattered = f32(fd_transmitted(dot(s.base.normal, to_light)));
@@ -113,7 +114,7 @@ fn transmit_light(s: Surface, to_light: real3) -> vec3<f32> {
     return vec3<f32>(s.translucency.color) * (scattered * share);
 }
 
-/// Light that is scattered below the surface and leaves through its layers.
+/// Evaluates subsurface scattering, attenuated by the layers above.
 @if(SUBSURFACE)
 fn scatter_light(s: Surface, to_light: real3) -> vec3<f32> {
     let given = material.subsurface;
@@ -123,7 +124,7 @@ fn scatter_light(s: Surface, to_light: real3) -> vec3<f32> {
     return given.color * (scattered * layer_transmittance(s));
 }
 
-/// The Lambert layer of cloth, wrapped about the terminator and tinted there.
+/// Evaluates the Lambert layer of cloth, wrapped around the terminator and tinted there.
 @if(CLOTH_SUBSURFACE)
 fn reflect_cloth(s: Surface, to_light: real3) -> vec3<f32> {
     let nol = dot(s.base.normal, to_light);
@@ -131,7 +132,7 @@ fn reflect_cloth(s: Surface, to_light: real3) -> vec3<f32> {
     return vec3<f32>(s.base.diffuse * tint * (wrapped_cosine(nol) * fd_lambert()));
 }
 
-/// The sheen lobe alone.
+/// Evaluates only the sheen lobe.
 @if(SHEEN)
 fn reflect_sheen(s: Surface, to_light: real3) -> vec3<f32> {
     let nol = min(dot(s.base.normal, to_light), 1.0);
@@ -144,7 +145,7 @@ fn reflect_sheen(s: Surface, to_light: real3) -> vec3<f32> {
     return vec3<f32>(s.sheen.color) * (f32(d) * f32(v) * f32(nol));
 }
 
-/// The coat alone in x, and in y the share that it takes from what is below.
+/// Returns the coat's reflection in x, and its attenuation of the layers below in y.
 @if(CLEAR_COAT)
 fn reflect_coat(s: Surface, to_light: real3) -> vec2<f32> {
     let h = half_vector(to_light, s.base.view);
@@ -163,7 +164,7 @@ fn reflect_coat(s: Surface, to_light: real3) -> vec2<f32> {
     return vec2<f32>(f32(d) * f32(v_kelemen(loh)) * fresnel * f32(nol), fresnel);
 }
 
-/// BSDF times cosine of the whole surface toward the unit vector `to_light`.
+/// Evaluates BSDF times cosine of the whole surface toward the unit vector `to_light`.
 fn reflect_surface(s: Surface, to_light: real3) -> vec3<f32> {
     var reflected = reflect_base(s, to_light);
     @if(CLOTH_SUBSURFACE) reflected += reflect_cloth(s, to_light);

@@ -1,4 +1,4 @@
-// What a surface with all its lobes reflects of the environment.
+// Reflection of the environment by a surface with all its lobes.
 
 @if(AMBIENT_OCCLUSION || OCCLUSION_UPSAMPLED)
 import package::interface::ambient_occlusion::screen_occlusion;
@@ -34,24 +34,24 @@ import package::shading::surface::Surface;
 @if(IRIDESCENCE)
 import package::shading::surface::share_below;
 
-/// Ambient occlusion as visibility: the share of the ambient light that arrives, 1 where nothing is
-/// occluded.
+/// Visibility of ambient light: the share that arrives, 1 without occlusion.
 struct AmbientVisibility {
-    /// For the Lambert layer.
+    /// Visibility for the Lambert layer.
     diffuse: vec3<f32>,
-    /// For the GGX layer.
+    /// Visibility for the GGX layer.
     specular: vec3<f32>,
-    /// Of the cosine-weighted hemisphere, 0…1.
+    /// Visibility of the cosine-weighted hemisphere, 0…1.
     ambient: f32,
 }
 
-/// Whether the picture's own occlusion is read.
+/// True if screen-space ambient occlusion is read.
 @if(AMBIENT_OCCLUSION || OCCLUSION_UPSAMPLED)
 const SCREEN_OCCLUSION: bool = true;
 @else
 const SCREEN_OCCLUSION: bool = false;
 
-/// Visibility for a specular lobe where `ambient` is that of the cosine-weighted hemisphere.
+/// Returns the visibility for a specular lobe, from the visibility `ambient` of the cosine-weighted
+/// hemisphere.
 fn specular_visibility(nov: f32, ambient: f32, alpha: f32) -> f32 {
     if SPECULAR_OCCLUSION {
         return specular_occlusion(nov, ambient, alpha);
@@ -59,9 +59,8 @@ fn specular_visibility(nov: f32, ambient: f32, alpha: f32) -> f32 {
     return 1.0;
 }
 
-/// Visibility from the occlusion texture and, where `on_screen`, what the picture shows about the
-/// fragment: the lesser of the two, as the quality of shading has it. Position and slope of depth
-/// are as `screen_occlusion` takes them.
+/// Returns the lower of the occlusion texture and, if `on_screen`, screen-space occlusion. Quality
+/// overrides select the terms. Position and slope of depth are as in `screen_occlusion`.
 fn ambient_visibility(
     s: StandardSurface,
     uv: vec4<f32>,
@@ -88,7 +87,7 @@ fn ambient_visibility(
         let normal = vec3<f32>(s.normal);
         let open = normalize_or(around.yzw, normal);
         let r = reflect(-vec3<f32>(s.view), normal);
-        // The lesser of both, as in Filament: cones say nothing about mirrors.
+        // The minimum of both, as in Filament: cones do not apply to mirrors.
         specular = min(specular, specular_occlusion_cones(open, r, ambient, f32(s.alpha)));
     }
     var visible = AmbientVisibility(vec3<f32>(ambient), vec3<f32>(specular), ambient);
@@ -96,18 +95,18 @@ fn ambient_visibility(
         visible.diffuse = gtao_multi_bounce(ambient, vec3<f32>(s.diffuse));
         visible.specular = gtao_multi_bounce(specular, vec3<f32>(s.f0));
     }
-    // Chosen and not branched on: where a branch hangs on a uniform (the strength of the texture)
-    // and a texel, Mesa 22.3's software driver may crash.
+    // Uses select instead of a branch. Branches on a uniform and a texel may crash Mesa 22.3's
+    // software driver.
     let open = ambient == 1.0;
     visible.diffuse = select(visible.diffuse, vec3<f32>(1.0), open);
     visible.specular = select(visible.specular, vec3<f32>(1.0), open);
     return visible;
 }
 
-/// Radiance that the base reflects; `normal` and `view` are those of the surface, in f32 since a
-/// mirror shows what rounding them does. Where `on_screen`, what rays found in the picture takes
-/// the place of as much of the environment as it counts; `position` is as in @builtin(position),
-/// `world` that of the fragment. What is found is not occluded: it was seen.
+/// Returns the radiance that the base reflects. `normal` and `view` are in f32, because mirrors
+/// show their rounding. If `on_screen`, screen-space reflections replace the environment by their
+/// weight, without occlusion. `position` is as in @builtin(position); `world` is the fragment's
+/// position.
 fn reflect_environment(
     s: Surface,
     normal: vec3<f32>,
@@ -164,15 +163,15 @@ fn reflect_environment(
         let light = ambient_irradiance(normal) + ambient_radiance(-view, through);
         specular += given.color * light * subsurface_ambient(given.thickness);
     }
-    // Occlusion of the front is applied to light from behind as well.
+    // Occlusion of the front also applies to light from behind.
     @if(DIFFUSE_TRANSMISSION)
     specular += vec3<f32>(s.translucency.color * below) * ambient_irradiance(-normal)
         * visibility.diffuse;
     return diffuse * visibility.diffuse + specular;
 }
 
-/// Radiance that leaves the surface: `below` from its base through its layers, sheen and over it
-/// the clear coat, with what these reflect of the environment.
+/// Returns the radiance of the surface: `below`, attenuated by sheen and clear coat, plus their
+/// reflection of the environment.
 fn add_layers(
     s: Surface,
     normal: vec3<f32>,

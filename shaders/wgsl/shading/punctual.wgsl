@@ -1,6 +1,5 @@
-// Light of all punctual lights: of every one, or with the feature FROXELS of those alone that are
-// listed for the place. A light adds nothing where it does not reach, so both are the same sum in
-// the same order.
+// Sums all punctual lights, or with the feature FROXELS only those listed for the froxel. Lights
+// out of range contribute zero, so both sums are equal and have the same order.
 
 import package::interface::frame::{
     frame, lights, LightUniforms, LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT,
@@ -23,10 +22,10 @@ import package::shading::through::is_behind;
 @if(DIFFUSE_TRANSMISSION)
 import package::shading::through::far_side;
 
-/// Whether there are punctual lights: without them, what they reflect is no part of the shader.
+/// Enables punctual lights; false removes them from the shader.
 override LAMPS: bool = true;
 
-/// Radiance reflected from one punctual light, and let through.
+/// Returns the reflected and transmitted radiance of one punctual light.
 fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec3<f32> {
     if !takes_light(light.channels) {
         return vec3<f32>(0.0);
@@ -69,7 +68,7 @@ fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec
             return reflected * light_share(visible, light.shadow_strength);
         }
     }
-    // A body shadows the side of it that faces away from the light: no shadow falls there, as in
+    // The back side of an object is in its own shadow, so shadows are ignored there, as in
     // Filament.
     @if(SUBSURFACE || CLOTH_SUBSURFACE) {
         if is_behind(s, l) {
@@ -80,7 +79,7 @@ fn reflect_punctual(s: Surface, light: LightUniforms, receiver: Receiver) -> vec
     return reflected * light_share(visible, light.shadow_strength);
 }
 
-/// `radiance` with what punctual lights add to it.
+/// Returns `radiance` plus the contribution of punctual lights.
 @if(FROXELS)
 fn add_punctual(radiance: vec3<f32>, s: Surface, receiver: Receiver) -> vec3<f32> {
     var sum = radiance;
@@ -101,8 +100,8 @@ fn add_punctual(radiance: vec3<f32>, s: Surface, receiver: Receiver) -> vec3<f32
         if LAMPS {
             sum += reflect_punctual(s, lights[i], receiver);
         } else {
-            // Never, but something has to be in the loop: of a shader without any loop llvmpipe
-            // makes code that takes up to 1.8 times as long (docs/measurements/performance.md).
+            // Never executed, but the shader needs a loop: without any loop, llvmpipe generates
+            // code that is up to 1.8 times slower (docs/measurements/performance.md).
             sum += f32(i);
         }
     }

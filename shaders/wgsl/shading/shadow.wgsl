@@ -1,7 +1,7 @@
 // Visibility of lights by their shadow maps.
 //
-// Features: SHADOWS reads depth through a tent, SHADOW_SOFT depth with penumbrae, SHADOW_MOMENTS
-// moments. Without any every light reaches everything.
+// SHADOWS reads depth with a tent filter, SHADOW_SOFT reads depth with penumbrae, and
+// SHADOW_MOMENTS reads moments. Without these features, lights cast no shadows.
 
 import package::interface::shadow::{
     shadow, local_maps, ShadowMapUniforms, CASCADES, SHADOWS_END, LAMP_SHADOWS, WEAK_SHADOWS,
@@ -20,20 +20,20 @@ import package::shading::shadow_map::{Receiver, ahead_m, texel_scale};
 @if(SHADOW_MOMENTS)
 import package::shading::shadow_moments::moments_visibility;
 
-/// Visibility of the sun, 0…1.
+/// Returns the visibility of the sun, 0…1.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn sun_visibility(receiver: Receiver) -> f32 {
     if !receives_shadows() {
         return 1.0;
     }
     let ahead = ahead_m(receiver.world);
-    // Of a single map the compiler knows the number; where it has an end, shadows have faded there.
+    // The index of a single cascade is a constant; shadows have faded out at its end.
     let cascade = select(cascade_at(ahead, shadow.far_ends), 0u, CASCADES == 1u);
     if cascade >= CASCADES {
         return 1.0;
     }
     var map = shadow.cascades[min(cascade, CASCADES - 1u)];
-    // And of any that it takes the whole layer of its number.
+    // Every cascade fills the layer of its index, so these are constants, too.
     map.uv_scale = 1.0;
     map.layer = min(cascade, CASCADES - 1u);
     let visibility = map_visibility(map, receiver);
@@ -45,8 +45,7 @@ fn sun_visibility(receiver: Receiver) -> f32 {
     return 1.0;
 }
 
-/// Share of the sun's light that arrives where that share of it is visible: its shadows have a
-/// strength.
+/// Returns the share of sunlight for this visibility, with the shadow strength applied.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn sun_share(visibility: f32) -> f32 {
     if !WEAK_SHADOWS {
@@ -60,7 +59,7 @@ fn sun_share(visibility: f32) -> f32 {
     return visibility;
 }
 
-/// Share of a local light that arrives where that share of it is visible.
+/// Returns the share of a punctual light for this visibility, with the shadow strength applied.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn light_share(visibility: f32, strength: f32) -> f32 {
     if !WEAK_SHADOWS {
@@ -74,8 +73,9 @@ fn light_share(visibility: f32, strength: f32) -> f32 {
     return visibility;
 }
 
-/// Visibility of a local light whose first map is `local_maps[first - 1]`, 0 being none;
-/// `from_light` leads from the light to the receiver. A point light has six maps, a spot one.
+/// Returns the visibility of a punctual light whose first map is `local_maps[first - 1]`; 0 means
+/// none. `from_light` points from the light to the receiver. A point light has six maps, a spot
+/// light one.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver: Receiver) -> f32 {
     if !LAMP_SHADOWS || first == 0u || !receives_shadows() {
@@ -90,7 +90,7 @@ fn light_visibility(first: u32, is_point: bool, from_light: vec3<f32>, receiver:
     return 1.0;
 }
 
-/// A color for each cascade, where they are to be seen; else white.
+/// Returns a debug color for the cascade if SHOW_CASCADES is on; otherwise white.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn cascade_tint(world: vec3<f32>) -> vec3<f32> {
     if !SHOW_CASCADES {
@@ -109,7 +109,7 @@ fn cascade_tint(world: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(1.0);
 }
 
-/// Visibility by one map; what lies outside of it is lit.
+/// Returns the visibility in one map; 1 outside the map.
 @if(SHADOWS || SHADOW_SOFT || SHADOW_MOMENTS)
 fn map_visibility(map: ShadowMapUniforms, receiver: Receiver) -> f32 {
     let w = dot(vec4<f32>(receiver.world, 1.0), transpose(map.clip_from_world)[3]);

@@ -1,4 +1,4 @@
-// Visibility by shadow maps that hold depth: a tent, or penumbrae.
+// Visibility from depth shadow maps, with a tent filter or penumbrae.
 
 import package::interface::shadow::{
     shadow, shadow_map, shadow_sampler, shadow_depth, ShadowMapUniforms, SHADOW_FILTER_PCSS,
@@ -12,12 +12,12 @@ import package::lib::shadow::{
 };
 import package::shading::shadow_map::{Receiver, texel_m, layer_uv, uvz_along};
 
-/// Whether depth `z` is lit at a place in a layer, filtered over the four nearest texels.
+/// Compares depth `z` at a position in a layer, filtered over the four nearest texels.
 fn compare(layer: u32, at: vec2<f32>, z: f32) -> f32 {
     return textureSampleCompareLevel(shadow_map, shadow_sampler, at, layer, z);
 }
 
-/// A tent of 3×3 texels.
+/// Returns the visibility with a 3×3 tent filter.
 fn tent_visibility(map: ShadowMapUniforms, at: vec3<f32>) -> f32 {
     let taps = tent_3x3(at.xy, vec2<f32>(shadow.texels * map.uv_scale));
     let low = layer_uv(map, vec2<f32>(taps.u.x, taps.v.x), 0.0);
@@ -34,12 +34,13 @@ fn tent_visibility(map: ShadowMapUniforms, at: vec3<f32>) -> f32 {
     return dot(rows, taps.row_weight);
 }
 
-/// Taps of the search for blockers, by filter; and over the penumbra.
+/// Numbers of taps for the blocker search of each filter, and for the penumbra.
 const DPCF_TAPS: u32 = 12u;
 const PCSS_TAPS: u32 = 16u;
 
-/// DPCF (Myers, "Shadow of Cold War", 2021) and PCSS (Fernando, "Percentage-Closer Soft Shadows",
-/// 2005): the mean depth of blockers says how wide the penumbra is.
+/// Returns the visibility with DPCF (Myers, "Shadow of Cold War", 2021) or PCSS (Fernando,
+/// "Percentage-Closer Soft Shadows", 2005). The mean depth of blockers determines the penumbra
+/// width.
 fn soft_visibility(
     map: ShadowMapUniforms,
     receiver: Receiver,
@@ -55,7 +56,8 @@ fn soft_visibility(
     let size = shadow.texels * map.uv_scale;
     let per_m = 1.0 / texel_m(map, clip.w);
     let is_disc = map.bulb_m == 0.0;
-    // The disc of the sun is as wide as the way to the blocker makes it: at most from the near end.
+    // The search radius of a disc at infinity grows with the distance to the blocker, at most from
+    // the near end.
     let to_near_m = (1.0 - at.z) * map.depth_m * clip.w;
     let search_m = select(map.bulb_m, map.tan_radius * to_near_m, is_disc);
     let search = penumbra_texels(search_m, per_m, is_disc);
@@ -67,7 +69,7 @@ fn soft_visibility(
     var depth_sum = 0.0;
     for (var i = 0u; i < count; i++) {
         let offset = vogel_tap(i, count, turn) * search / size;
-        // What is loaded has no sampler that takes the edge for what is beyond it.
+        // Loads do not clamp to the edge, so the coordinates are clamped.
         let texel = clamp(layer_uv(map, at.xy + offset, 0.0) * shadow.texels, vec2<f32>(0.0), last);
         let depth = textureLoad(shadow_depth, vec2<i32>(texel), map.layer, 0).r;
         if depth - at.z > plane_rise(slope, offset, at.z) {
@@ -84,7 +86,7 @@ fn soft_visibility(
         ratio = penumbra_ratio_perspective(at.z, blocker, map.near_over_range);
     }
     if is_disc {
-        // As a share of what was searched.
+        // Relative to the search radius.
         ratio = (blocker - at.z) / max(1.0 - at.z, 1e-4);
     }
     if !is_pcss {
@@ -101,14 +103,14 @@ fn soft_visibility(
     return lit / f32(PCSS_TAPS);
 }
 
-/// Rise of the receiver's plane in depth at an offset, from its depth `z`. The plane ends at the
-/// far end of the map, 0: the map is cleared to that depth, and no caster is there.
+/// Returns the change of depth along the receiver's plane at an offset, from its depth `z`. It is
+/// limited to the far end of the map, 0, which has no casters.
 fn plane_rise(slope: vec2<f32>, offset: vec2<f32>, z: f32) -> f32 {
     return max(dot(slope, offset), -z);
 }
 
-/// A radius in texels along both axes, at most the side of a layer: farther taps find the edge. The
-/// disc's is at least a texel, which hides the map's grid.
+/// Returns a radius in texels along both axes, at most the size of a layer. A disc has at least one
+/// texel, which hides the texel grid.
 fn penumbra_texels(radius_m: f32, texels_per_m: vec2<f32>, is_disc: bool) -> vec2<f32> {
     let least = select(0.0, 1.0, is_disc);
     return clamp(radius_m * texels_per_m, vec2<f32>(least), vec2<f32>(shadow.texels));

@@ -1,4 +1,4 @@
-// Visibility by shadow maps that hold moments of warped depth.
+// Visibility from shadow maps that hold moments of warped depth.
 
 import package::interface::frame::{frame, light_sampler};
 import package::interface::shadow::{shadow, shadow_moments, ShadowMapUniforms};
@@ -7,7 +7,7 @@ import package::lib::shadow::receiver_plane_slope;
 import package::lib::shadow_moments::{warp_depth, least_variance, moment_visibility};
 import package::shading::shadow_map::{ahead_m, texel_m, layer_uv, uvz_along};
 
-/// Moments, with all the filtering that the texture has.
+/// Returns the visibility from moments, with all texture filtering.
 fn moments_visibility(
     map: ShadowMapUniforms,
     normal: vec3<f32>,
@@ -30,7 +30,7 @@ fn moments_visibility(
     return moment_visibility(moments, warped, least, shadow.bleed);
 }
 
-/// The level whose texels are as large as a pixel of the frame.
+/// Returns the mip level whose texels are as large as a pixel of the frame.
 fn moment_level(map: ShadowMapUniforms, world: vec3<f32>, w: f32) -> f32 {
     let m = frame.clip_from_world;
     let scale = 0.5 * frame.viewport_size_px.y * length(vec3<f32>(m[0].y, m[1].y, m[2].y));

@@ -1,8 +1,8 @@
-// A surface with its lobes: what shading needs of the material at one point.
+// Surface with its lobes: the material inputs of shading at one point.
 //
-// A lobe is there only under its feature, so a surface without it carries and computes nothing
-// of it. Layers from the top: clear coat, sheen, then GGX over Lambert, whose reflectance a thin
-// film changes. Light from behind is scattered through the Lambert layer.
+// Each lobe exists only with its feature and costs nothing without it. Layers from the top: clear
+// coat, sheen, then GGX over Lambert, whose reflectance a thin film changes. Light from behind is
+// scattered through the Lambert layer.
 
 @if(CLEAR_COAT)
 import package::interface::material::{TRAIT_COAT_KEEPS_F0, material_has};
@@ -26,7 +26,7 @@ import package::shading::quality::{FAST_COAT, COAT_IOR_CHANGE};
 /// Clear coat: a dielectric layer of index 1.5 over the other lobes.
 @if(CLEAR_COAT)
 struct ClearCoat {
-    /// Unit normal: its own map's, not the base's.
+    /// Unit normal of the coat, from its own normal map.
     normal: vec3<f32>,
     /// normal · view, at least 1e-4.
     nov: real,
@@ -45,7 +45,7 @@ struct Sheen {
     color: real3,
     /// Directional albedo of the lobe for color one.
     albedo: real,
-    /// Share of the light that the layers below receive and give off, 0…1.
+    /// Attenuation of the layers below, 0…1.
     attenuation: real,
     /// Perceptual roughness, 0…1.
     roughness: f32,
@@ -60,7 +60,7 @@ struct Anisotropy {
     /// which the lobe is wider.
     tangent: vec3<f32>,
     bitangent: vec3<f32>,
-    /// Roughness of the microfacet distribution along the two.
+    /// Roughness of the microfacet distribution along `tangent` and `bitangent`.
     alpha: real2,
     /// Strength of the anisotropy, 0…1.
     strength: f32,
@@ -69,32 +69,32 @@ struct Anisotropy {
 /// A thin film over the base.
 @if(IRIDESCENCE)
 struct ThinFilm {
-    /// Share of the base under the film, 0…1.
+    /// Coverage of the base by the film, 0…1.
     factor: f32,
     /// Index of refraction of the film, 1 or more.
     ior: f32,
     /// Thickness of the film in nm.
     thickness_nm: f32,
-    /// Reflectance at normal incidence, without the film, of what is under it.
+    /// Reflectance of the base at normal incidence, without the film.
     base_f0: vec3<f32>,
-    /// Factor on what the film reflects: that of KHR_materials_specular on dielectrics.
+    /// Factor on the film's reflectance: that of KHR_materials_specular on dielectrics.
     weight: f32,
-    /// f0 of the base where there is no film.
+    /// f0 of the base without the film.
     bare_f0: real3,
-    /// Largest channel of what film and base reflect toward the viewer, by the share under it.
+    /// Largest channel of the reflectance toward the viewer, by film coverage.
     toward_view: f32,
 }
 
 /// Light that is scattered through the surface from behind.
 @if(DIFFUSE_TRANSMISSION)
 struct Translucency {
-    /// Albedo of the light that comes through, what the volume absorbs taken off.
+    /// Albedo of the transmitted light, including absorption in the volume.
     color: real3,
-    /// Depth in m under the surface at which the light enters: 0 for a thin sheet.
+    /// Depth under the surface at which the light enters, in m; 0 for a thin sheet.
     depth_m: f32,
 }
 
-/// A surface with all its lobes.
+/// Surface with all its lobes.
 struct Surface {
     base: StandardSurface,
     @if(CLEAR_COAT)
@@ -109,29 +109,28 @@ struct Surface {
     translucency: Translucency,
 }
 
-/// Reflectance of film and base at the angle whose cosine is `cosine`.
+/// Returns the reflectance of film and base at the angle whose cosine is `cosine`.
 @if(IRIDESCENCE)
 fn film_reflectance(film: ThinFilm, cosine: f32) -> vec3<f32> {
     return thin_film_reflectance(cosine, film.ior, film.thickness_nm, film.base_f0) * film.weight;
 }
 
-/// Largest channel of a color: what takes so much of one takes it of all, so that what is left has
-/// the hue of what it was.
+/// Returns the largest channel of a color. Attenuating all channels by it preserves the hue of the
+/// rest.
 @if(IRIDESCENCE)
 fn largest_channel(color: vec3<f32>) -> f32 {
     return max(color.x, max(color.y, color.z));
 }
 
-/// Share of the light that gets under the specular layer of the base, whose directional albedo is
-/// `albedo`. Under a film all channels get what the largest leaves: no complementary hues appear.
+/// Returns the share of light that passes the base's specular layer with directional albedo
+/// `albedo`. Under a film, all channels use the largest albedo, which avoids complementary hues.
 @if(IRIDESCENCE)
 fn share_below(s: Surface, albedo: real3) -> real3 {
     let most = real(largest_channel(vec3<f32>(albedo)));
     return 1.0 - mix(albedo, real3(most), real(s.film.factor));
 }
 
-/// Transmittance of the layers over the base, 0…1: the share of what it emits that leaves the
-/// surface.
+/// Returns the transmittance of the layers above the base, 0…1, which attenuates emission.
 fn layer_transmittance(s: Surface) -> f32 {
     var share = 1.0;
     @if(SHEEN) share *= f32(s.sheen.attenuation);
@@ -140,8 +139,8 @@ fn layer_transmittance(s: Surface) -> f32 {
     return share;
 }
 
-/// f0 of the base under a coat of this strength. It is no more than in air, since an f0 near zero
-/// says that nothing is reflected, and not that the base has the index of air.
+/// Returns f0 of the base under a coat of this strength. It never exceeds f0 in air, because f0
+/// near zero means no reflection rather than the index of air.
 @if(CLEAR_COAT)
 fn coated_f0(f0: real3, strength: real) -> real3 {
     if !COAT_IOR_CHANGE || material_has(TRAIT_COAT_KEEPS_F0) {
@@ -156,15 +155,15 @@ fn coated_f0(f0: real3, strength: real) -> real3 {
     return mix(f0, min(under, f0), strength);
 }
 
-/// Perceptual roughness of the base under a coat of this strength and roughness.
+/// Returns the perceptual roughness of the base under a coat of this strength and roughness.
 @if(CLEAR_COAT)
 fn coated_roughness(base: f32, coat: f32, strength: f32) -> f32 {
     return f32(roughness_under_clear_coat(real(base), real(coat), real(strength)));
 }
 
-/// Unit direction of anisotropy in world space. `turn` is it as (tangent, bitangent) components,
-/// `tangent` the mesh's with its handedness in w, `front` the unit normal of the
-/// front side. A tangent that spans nothing is replaced by Duff's.
+/// Returns the unit direction of anisotropy in world space. `turn` is the direction in (tangent,
+/// bitangent) components, `tangent` is the mesh's with handedness in w, and `front` is the unit
+/// normal of the front side. Duff's tangent replaces a degenerate one.
 @if(ANISOTROPY)
 fn anisotropy_direction(normal: vec3<f32>, front: vec3<f32>, tangent: vec4<f32>, turn: vec2<f32>)
     -> vec3<f32>

@@ -8,8 +8,9 @@ import package::lib::real::real3;
 @if(IRIDESCENCE)
 import package::shading::surface::{ThinFilm, film_reflectance, largest_channel};
 
-/// The thin film of a fragment over a base whose f0 is `bare_f0`. `dielectric` is the reflectance
-/// of its dielectric part at normal and, in w, at grazing incidence; `color` that of its metal.
+/// Returns the thin film of a fragment over a base whose f0 is `bare_f0`. `dielectric` is the
+/// dielectric reflectance at normal incidence and, in w, at grazing incidence; `color` is the
+/// metal's.
 @if(IRIDESCENCE)
 fn film_of(
     uv: vec4<f32>,
@@ -20,10 +21,10 @@ fn film_of(
     dielectric: vec4<f32>,
 ) -> ThinFilm {
     let values = iridescence(uv);
-    // The film's reflectance is weakened as a whole, and not what is under it.
+    // The weight applies to the film's reflectance as a whole, not to the base below.
     let unweakened = min(dielectric.rgb / max(dielectric.w, 1e-4), vec3<f32>(1.0));
     var film = ThinFilm(
-        // Without thickness there is no film: one thinner than an atom fades out.
+        // A film of zero thickness has no effect, so films thinner than an atom fade out.
         saturate(values.x) * smoothstep(0.0, 0.03, values.y),
         material.iridescence.ior,
         values.y,

@@ -1,4 +1,4 @@
-// Light that comes through a surface: refracted by its body, or scattered.
+// Light transmitted through a surface: refracted or scattered.
 
 @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
 import package::interface::material::material;
@@ -22,8 +22,9 @@ import package::shading::surface::Surface;
 @if(DIFFUSE_TRANSMISSION)
 import package::shading::surface::Translucency;
 
-/// Pre-exposed radiance that arrives through a body of one index of refraction from what is behind
-/// it; `thickness_m` is 0 for a thin wall, `roughness` is the material's, which nothing widened.
+/// Returns pre-exposed radiance refracted through an object with one index of refraction.
+/// `thickness_m` is 0 for a thin wall; `roughness` is the material's, without specular
+/// antialiasing.
 @if(TRANSMISSION)
 fn refract_by(
     world: vec3<f32>,
@@ -43,7 +44,8 @@ fn refract_by(
         * transmittance(material.transmission.absorption, length(path));
 }
 
-/// The same through the material's body: with dispersion each channel by its own index.
+/// Returns pre-exposed radiance refracted through the object; with dispersion, each channel has its
+/// own index.
 @if(TRANSMISSION)
 fn refract_scene(
     world: vec3<f32>,
@@ -67,22 +69,23 @@ fn refract_scene(
     }
 }
 
-/// Light through a fragment from behind: `lambert` is what the Lambert layer gets of it.
+/// Returns the transmitted diffuse light of a fragment; `lambert` is its share of the Lambert
+/// layer.
 @if(DIFFUSE_TRANSMISSION)
 fn translucency_of(albedo: vec3<f32>, lambert: f32, thickness_m: f32) -> Translucency {
     let left = transmittance(material.transmission.absorption, thickness_m);
     return Translucency(real3(saturate(albedo) * (lambert * left)), thickness_m);
 }
 
-/// True if a light in that direction is behind the surface.
+/// Returns true if a light in this direction is behind the surface.
 @if(DIFFUSE_TRANSMISSION || SUBSURFACE || CLOTH_SUBSURFACE)
 fn is_behind(s: Surface, to_light: vec3<f32>) -> bool {
     return dot(vec3<f32>(s.base.normal), to_light) < 0.0;
 }
 
-/// Receiver of the shadows of lights from behind: the far side of the body, its depth below the
-/// surface. The normal is turned, since an offset away from the light would let the surface shadow
-/// itself.
+/// Returns the shadow receiver for lights from behind: the far side of the object, `depth_m` below
+/// the surface. The normal is flipped, because an offset away from the light would cause
+/// self-shadowing.
 @if(DIFFUSE_TRANSMISSION)
 fn far_side(s: Surface, receiver: Receiver) -> Receiver {
     var far = receiver;

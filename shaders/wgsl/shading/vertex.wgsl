@@ -1,7 +1,7 @@
-// A surface as it is drawn: what the vertex stage hands on, and the normals made of it.
+// Output of the vertex stage, and the normals derived from it.
 //
-// Feature TEXTURED: the material has a texture; without it no texture coordinates are handed on,
-// and tangents only where anisotropy follows them. VERTEX_COLORS: the mesh has colors.
+// Without the feature TEXTURED there are no texture coordinates, and tangents exist only for
+// anisotropy. VERTEX_COLORS: the mesh has colors.
 
 import package::interface::object::{
     Instance, world_position, clip_position, world_normal, world_tangent, handedness,
@@ -17,7 +17,7 @@ import package::interface::material::{
 import package::lib::normal_map::{unpack_normal, vertex_normal, apply_normal_map};
 import package::lib::numerics::normalize_or;
 
-/// What the vertex stage of surfaces hands on.
+/// Output of the vertex stage for surfaces.
 struct SurfaceVertex {
     @invariant @builtin(position) position: vec4<f32>,
     @location(0) world: vec3<f32>,
@@ -29,15 +29,15 @@ struct SurfaceVertex {
     @location(3) uv: vec4<f32>,
     @if(VERTEX_COLORS)
     @location(4) color: vec4<f32>,
-    /// Meters a unit of the mesh, the mean over its axes.
+    /// Length of a mesh unit in m, averaged over the axes.
     @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
     @location(5) @interpolate(flat) scale_m: f32,
-    /// Number of the material.
+    /// Index of the material.
     @if(MATERIAL_TABLE)
     @location(6) @interpolate(flat) material: u32,
 }
 
-/// What a vertex of a mesh hands on; `uv` has both sets.
+/// Returns the output for a vertex; `uv` holds both sets of texture coordinates.
 fn surface_vertex(
     instance: Instance,
     position: vec3<f32>,
@@ -62,21 +62,20 @@ fn surface_vertex(
     return vertex;
 }
 
-/// Both sets of texture coordinates, where a texture is there to be read.
+/// Returns both sets of texture coordinates, or zeros without textures.
 fn texture_uv(vertex: SurfaceVertex) -> vec4<f32> {
     @if(TEXTURED) return vertex.uv;
     @else return vec4<f32>(0.0);
 }
 
-/// What the base color is multiplied by.
+/// Returns the vertex color, a factor on the base color.
 fn vertex_color(vertex: SurfaceVertex) -> vec4<f32> {
     @if(VERTEX_COLORS) return vertex.color;
     @else return vec4<f32>(1.0);
 }
 
-/// The triangle's own normal, toward the viewer: window y runs downward, hence the order of the
-/// factors. Derivatives need every lane of the quad. Lines and points have no plane: theirs is the
-/// normal of the mesh.
+/// Returns the triangle's normal, facing the viewer; window y points down, hence the order of
+/// factors. Derivatives need every lane of the quad. Lines and points use the mesh's normal.
 fn geometric_normal(vertex: SurfaceVertex) -> vec3<f32> {
     if material_has(TRAIT_NO_AREA) {
         return normalize_or(vertex.normal, vec3<f32>(0.0, 0.0, 1.0));
@@ -87,9 +86,9 @@ fn geometric_normal(vertex: SurfaceVertex) -> vec3<f32> {
     );
 }
 
-/// +1 on front faces, -1 on the back faces of double-sided materials. Single-sided ones have
-/// no visible back faces: the pipeline culls them. It flips its winding for mirrored objects, so
-/// their fronts are fronts here.
+/// Returns +1 on front faces and -1 on back faces of double-sided materials. Back faces of
+/// single-sided materials are culled. The pipeline flips its winding for mirrored objects, so
+/// front_facing is correct for them.
 fn face_sign(front_facing: bool) -> f32 {
     if !material_has(TRAIT_DOUBLE_SIDED) {
         return 1.0;
@@ -97,12 +96,13 @@ fn face_sign(front_facing: bool) -> f32 {
     return select(-1.0, 1.0, front_facing);
 }
 
-/// The interpolated normal in world space, of unit length, facing the side that is seen.
+/// Returns the interpolated unit normal in world space, facing the visible side.
 fn smooth_normal(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32) -> vec3<f32> {
     return vertex_normal(vertex.normal, geometric * side) * side;
 }
 
-/// Unit shading normal in world space: `smooth_side` (of `smooth_normal`) with the normal map.
+/// Returns the unit shading normal in world space: `smooth_side` (from `smooth_normal`) with the
+/// normal map.
 @if(TEXTURED)
 fn shading_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32) -> vec3<f32> {
     if !material_has(SLOT_NORMAL) {
@@ -118,7 +118,7 @@ fn shading_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32) -> v
     return smooth_side;
 }
 
-/// A tangent-space normal in world space, facing the side that is seen.
+/// Returns a tangent-space normal in world space, facing the visible side.
 @if(TEXTURED)
 fn mapped_normal(vertex: SurfaceVertex, smooth_side: vec3<f32>, side: f32, tangent_space: vec3<f32>)
     -> vec3<f32>

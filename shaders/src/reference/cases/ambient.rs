@@ -135,7 +135,7 @@ pub(super) const CASES: &[Case] = &[
         "sample_half_hemisphere(v2(0u))",
         VEC3,
         |x| out3(sampling::sample_half_hemisphere(v2(x, 0))),
-        // What WGSL promises of sin and cos.
+        // Precision of sin and cos in WGSL.
         bound(1e-3, 0.0),
     ),
     case(

@@ -1,6 +1,6 @@
-//! What a case is, and what comes of it.
+//! Test cases of functions, and their results.
 
-/// How far a GPU may lie from the mirror: |gpu - mirror| ≤ absolute + relative·|mirror|.
+/// Error tolerance of a GPU result: |gpu - mirror| ≤ absolute + relative·|mirror|.
 ///
 /// Bounds follow from the accuracy WGSL promises (section 15.7.4): a few ulp for arithmetic,
 /// 2⁻¹¹ absolute for sin and cos, 4096 ulp for the arc functions. A rounding to f16 is 2⁻¹¹ of
@@ -15,7 +15,7 @@ pub struct Bound {
     pub period: f64,
 }
 
-/// What a parameter ranges over.
+/// Domain of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
     /// One number, uniform between the two.
@@ -50,20 +50,20 @@ pub struct Case {
     pub results: &'static [&'static str],
     /// The mirror, of the same numbers and with the same results.
     pub mirror: fn(&[f64]) -> Vec<f64>,
-    /// How far apart the two may be.
+    /// Error tolerance.
     pub bound: Bound,
-    /// Whether this is the build in half floats.
+    /// True for the build in half floats.
     pub in_half: bool,
-    /// What is different in the build in half floats; `None` if nothing is.
+    /// Differences of the half-float build; `None` if there are none.
     pub half: Option<HalfCase>,
 }
 
-/// What is different for a function in the build in half floats.
+/// Differences of a function in the half-float build.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfCase {
     /// Domains of its parameters, rounded to half floats before they are used.
     pub parameters: &'static [Domain],
-    /// How far it may be from the mirror of the rounded numbers.
+    /// Error tolerance against the mirror of the rounded inputs.
     pub bound: Bound,
 }
 
@@ -80,17 +80,17 @@ pub struct Deviation {
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[error("{function}({inputs:?}) result {result}: shader {gpu}, mirror {mirror}, bound {bound:e}")]
 pub struct Disagreement {
-    /// Which function.
+    /// Name of the function.
     pub function: &'static str,
     /// Its numbers.
     pub inputs: Vec<f32>,
     /// Index into [`Case::results`].
     pub result: usize,
-    /// What came back.
+    /// Result of the GPU.
     pub gpu: f32,
-    /// What should have.
+    /// Expected result.
     pub mirror: f64,
-    /// How far apart they may be.
+    /// Error tolerance.
     pub bound: f64,
 }
 

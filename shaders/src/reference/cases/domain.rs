@@ -27,7 +27,7 @@ const HARD: [f64; 18] = [
 ];
 
 impl Domain {
-    /// How many numbers it fills.
+    /// Returns the number of values per parameter.
     pub const fn width(self) -> usize {
         match self {
             Self::Direction => 3,

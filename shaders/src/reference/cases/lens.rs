@@ -123,7 +123,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         ["flare", "starburst"],
-        // Where rays do not count: nearer to the middle all is left.
+        // Star rays have no effect near the center.
         &[Linear(0.499, 0.5), Linear(0.499, 0.5), Linear(-2.0, 2.0)],
         "starburst(v2(0u), x[2])",
         SCALAR,

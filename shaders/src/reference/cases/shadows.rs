@@ -94,7 +94,7 @@ pub(super) const CASES: &[Case] = &[
         "vogel_tap(u32(x[0]), u32(x[1]), x[2])",
         VEC2,
         |x| out2(shadow::vogel_tap(x[0] as u32, x[1] as u32, x[2])),
-        // What WGSL promises of sin and cos.
+        // Precision of sin and cos in WGSL.
         bound(1.5e-3, 0.0),
     ),
     case(
@@ -147,7 +147,7 @@ pub(super) const CASES: &[Case] = &[
         ARITHMETIC,
     ),
     case(
-        // Meters from a lamp: within its bulb, too.
+        // Distances from a punctual light in m, including points inside its source.
         ["shadow", "cube_face_of"],
         &[Linear(-0.2, 0.2), Linear(-0.2, 0.2), Linear(-0.2, 0.2)],
         "cube_face_of(v3(0u))",

@@ -8,7 +8,7 @@ use glam::DVec4;
 
 /// Colors, and boxes of them.
 const COLOR: Domain = Vector(3, 0.0, 4.0);
-/// What a compressed color may be, and the brightest that there is.
+/// Values of a compressed color, including the maximum.
 const COMPRESSED: Domain = Values(&[0.0, 0.1, 0.5, 0.9, 0.99, 1.0, 1.5]);
 
 pub(super) const CASES: &[Case] = &[
@@ -42,7 +42,7 @@ pub(super) const CASES: &[Case] = &[
         "expand_range(v3(0u))",
         VEC3,
         |x| out3(taa::expand_range(v3(x, 0))),
-        // What is left of 1 is off by a rounding of 1.
+        // The difference from 1 has the rounding error of 1.
         bound(1e-6, 3e-5),
     ),
     case(
