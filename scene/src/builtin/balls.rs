@@ -1,4 +1,4 @@
-//! `balls`: five materials under an environment: a mirror, rough metal, white paint, cloth, and metal under a clear coat.
+//! `balls`: five materials that show an environment.
 
 use glam::{DMat4, DVec3, Vec3};
 

@@ -1,5 +1,4 @@
-//! `columns`: a colonnade in stone. Shafts cast long shadows across steps, and the corners under the
-//! beams and around the bases are what ambient occlusion is for.
+//! `columns`: a stone colonnade that shows long shadows and ambient occlusion in corners.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
@@ -135,7 +134,7 @@ fn shaft() -> Mesh {
     mesh
 }
 
-/// Things on the floor that throw and catch shadows.
+/// Adds objects on the floor that cast and receive shadows.
 fn props(scene: &mut Scene) {
     let bronze = Material::metal("bronze", Vec3::new(0.714, 0.428, 0.181), 0.35);
     let bronze = scene.add_material(bronze);

@@ -7,10 +7,10 @@ use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Re
 use super::error::CodecError;
 use super::picture::{Header, Picture8, check_size, gray, opaque, widened};
 
-/// What the decoder may allocate for itself, in bytes.
+/// Maximum bytes that the decoder may allocate for itself.
 const MAX_DECODER_BYTES: usize = 512 << 20;
 
-/// Reads the header and refuses sizes over the limit.
+/// Reads the header and rejects sizes over the limit.
 fn open(bytes: &[u8], max_side_texels: u32) -> Result<Reader<Cursor<&[u8]>>, CodecError> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: MAX_DECODER_BYTES });
     decoder.set_ignore_text_chunk(true);
@@ -21,14 +21,14 @@ fn open(bytes: &[u8], max_side_texels: u32) -> Result<Reader<Cursor<&[u8]>>, Cod
     Ok(reader)
 }
 
-/// Size, and what the samples take in the file's own form.
+/// Reads the size and the memory for samples in the file's own format.
 pub(crate) fn header(bytes: &[u8], max_side_texels: u32) -> Result<Header, CodecError> {
     let reader = open(bytes, max_side_texels)?;
     let (width, height) = reader.info().size();
     let (color, depth) = reader.output_color_type();
     let header = Header { size_texels: [width, height], working_bytes: 0 };
     let samples = header.texels() * color.samples() as u64;
-    // Sixteen bits are there as such, then as eight; eight bits with all channels are the picture itself.
+    // Sixteen-bit samples exist twice, as stored and rounded; eight-bit RGBA samples are the image itself.
     let working_bytes = match (color, depth) {
         (_, BitDepth::Sixteen) => samples * 3,
         (ColorType::Rgba, _) => 0,
