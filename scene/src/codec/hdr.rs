@@ -89,8 +89,8 @@ fn decode_row(rest: &mut &[u8], row: &mut [[u8; 4]], y: u32) -> Result<(), HdrEr
     }
 }
 
-/// Decodes the runs of one channel. A count up to 128 precedes that many literal bytes; a count above 128 repeats one
-/// byte.
+/// Decodes the runs of one channel. A code up to 128 precedes that many literal bytes; a larger code repeats one byte
+/// code − 128 times.
 fn decode_channel(rest: &mut &[u8], row: &mut [[u8; 4]], channel: usize, y: u32) -> Result<(), HdrError> {
     let mut at = 0;
     while at < row.len() {

@@ -37,8 +37,8 @@ pub(crate) fn header(bytes: &[u8], max_side_texels: u32) -> Result<Header, Codec
     Ok(Header { working_bytes, ..header })
 }
 
-/// Decodes to four bytes a texel, straight alpha. Color management chunks are ignored; sixteen bits a channel are rounded
-/// to eight.
+/// Decodes to four bytes a texel, straight alpha. Color management chunks are ignored; 16-bit channels are rounded to 8
+/// bits.
 pub(crate) fn decode(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, CodecError> {
     let mut reader = open(bytes, max_side_texels)?;
     let (width, height) = reader.info().size();
@@ -47,7 +47,7 @@ pub(crate) fn decode(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, Cod
     let mut samples = vec![0; texels * color.samples() * if depth == BitDepth::Sixteen { 2 } else { 1 }];
     reader.next_frame(&mut samples).map_err(CodecError::other)?;
     if depth == BitDepth::Sixteen {
-        // 65535 is 257 · 255: the nearest of 256 steps.
+        // 65535 = 257 · 255: rounds to the nearest 8-bit step.
         let eight = |two: &[u8]| ((u32::from(two[0]) * 256 + u32::from(two[1]) + 128) / 257) as u8;
         samples = samples.chunks_exact(2).map(eight).collect();
     }
@@ -61,7 +61,7 @@ pub(crate) fn decode(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, Cod
     Ok(Picture8 { size_texels: [width, height], rgba8 })
 }
 
-/// Encodes four bytes a texel, sRGB codes, straight alpha. The number of bytes must be that of the size.
+/// Encodes four bytes a texel, sRGB-encoded, straight alpha. The number of bytes must match the size.
 pub(crate) fn encode(to: impl Write, [width, height]: [u32; 2], rgba8: &[u8]) -> Result<(), CodecError> {
     let mut encoder = Encoder::new(to, width, height);
     encoder.set_color(ColorType::Rgba);
