@@ -1,8 +1,8 @@
 //! Surfaces of revolution around the y axis: spheres, cylinders, tori, columns.
 //!
-//! A profile is a polyline in the half plane (radius, y), listed in the direction of increasing v. The outside is on
-//! its right, with the radius pointing right. The position at u is (r sin φ, y, r cos φ) with φ = 2πu; for a viewer
-//! outside, u grows to the right.
+//! A profile is a polyline in the half plane (radius, y), listed in the direction of increasing v. With the radius
+//! pointing right, the outside of the surface is to its left. The position at u is (r sin φ, y, r cos φ) with φ = 2πu;
+//! for a viewer outside, u grows to the right.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,4 +1,4 @@
-//! Extensions of glTF: which ones the importer reads, and what happens to a file that uses another one.
+//! Extensions of glTF: which ones the importer supports, and how others are treated.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub enum Support {
     Full,
     /// The extension is read in a build with this feature of the crate.
     Feature(&'static str),
-    /// The extension is not read. A file that uses it loads with a warning; a file that requires it is refused.
+    /// The extension is not read. A file that uses it loads with a warning; a file that requires it is rejected.
     None,
 }
 
@@ -25,7 +25,7 @@ pub struct Extension {
     pub name: &'static str,
     /// Treatment by the importer.
     pub support: Support,
-    /// One line on what is read, what is converted, or what a file loses without it.
+    /// One line on what is read or converted, or what a file loses without the extension.
     pub note: &'static str,
 }
 
@@ -41,8 +41,8 @@ const fn none(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::None, note }
 }
 
-/// Every Khronos (`KHR_`) and multi-vendor (`EXT_`) extension of glTF 2.0, sorted by name. `docs/reference/files.md` prints this
-/// table.
+/// Every Khronos (`KHR_`) and multi-vendor (`EXT_`) extension of glTF 2.0, sorted by name. `docs/reference/files.md`
+/// contains this table.
 pub const EXTENSIONS: &[Extension] = &[
     none("EXT_instance_features", "feature identifiers of instances are not read"),
     none("EXT_lights_ies", "light profiles are not read; the light shines evenly"),
@@ -104,7 +104,7 @@ pub const EXTENSIONS: &[Extension] = &[
     none("KHR_xmp_json_ld", "metadata is not read"),
 ];
 
-/// Returns [`EXTENSIONS`] as a table in Markdown.
+/// Returns [`EXTENSIONS`] as a Markdown table.
 pub fn extensions_table() -> String {
     let row = |extension: &Extension| {
         let support = match extension.support {
@@ -118,7 +118,7 @@ pub fn extensions_table() -> String {
     format!("| extension | read | note |\n| --- | --- | --- |\n{rows}")
 }
 
-/// Returns whether this build reads the extension.
+/// Returns true if this build reads the extension.
 pub(super) fn is_supported(name: &str) -> bool {
     let known = EXTENSIONS.iter().find(|extension| extension.name == name);
     known.is_some_and(|extension| match extension.support {
@@ -128,7 +128,7 @@ pub(super) fn is_supported(name: &str) -> bool {
     })
 }
 
-/// Returns whether this crate was compiled with the feature.
+/// Returns true if this crate was compiled with the feature.
 fn is_enabled(feature: &str) -> bool {
     let enabled = [
         ("draco", cfg!(feature = "draco")),
@@ -141,11 +141,11 @@ fn is_enabled(feature: &str) -> bool {
 
 /// Checks the version and the extensions of a document.
 ///
-/// Warns once for each optional extension that is not read.
+/// Warns once for each optional extension that is not supported.
 ///
 /// # Errors
 ///
-/// Fails for a version other than 2, and for a required extension that is not read.
+/// Fails for a version other than 2, and for a required extension that is not supported.
 pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result<(), SceneError> {
     let unsupported = |feature| SceneError::Unsupported { file: file.into(), feature };
     let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);

@@ -36,7 +36,8 @@ pub(super) struct Collapse {
     /// Attributes of vertices: `width` numbers each.
     values: Vec<f64>,
     width: usize,
-    /// Quadrics of the attributes: one for each point's position, and one for each attribute number.
+    /// Attribute quadric of each vertex: the part that depends on position alone. The shifts of each attribute number
+    /// follow.
     of_values: Vec<Quadric>,
     shifts: Vec<Shift>,
     /// Geometric quadric of each point.
