@@ -73,8 +73,8 @@ pub(super) fn decode(
     .collect()
 }
 
-/// Buffers that need not be read, since every view of them is compressed: those marked as fallback, and those without a URI
-/// that are not the binary chunk.
+/// Returns the buffers that need not be read, since every view of them is compressed: those marked as fallback, and
+/// those without a URI that are not the binary chunk.
 pub(super) fn fallbacks(root: &Root, has_blob: bool) -> BTreeSet<usize> {
     let is_marked = |buffer: &Buffer| {
         let others = buffer.extensions.as_ref().map(|extensions| &extensions.others);
@@ -91,13 +91,13 @@ pub(super) fn fallbacks(root: &Root, has_blob: bool) -> BTreeSet<usize> {
     buffers.filter(is_fallback).map(|(index, _)| index).collect()
 }
 
-/// The extension's object of a view, with the name that it has.
+/// Returns the extension object of a view, and the name under which it appears.
 fn of_view(view: &View) -> Option<(&'static str, &Value)> {
     let others = &view.extensions.as_ref()?.others;
     NAMES.into_iter().find_map(|name| Some((name, others.get(name)?)))
 }
 
-/// Reads and checks the extension's object of a view.
+/// Reads and checks the extension object of a view.
 fn find<'a>(source: &'a Source<'_>, view: usize, name: &str, json: &Value) -> Result<Compressed<'a>, SceneError> {
     let at = format!("buffer view {view}: {name}");
     let number = |key: &str| match json.get(key).map(Value::as_u64) {
