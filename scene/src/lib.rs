@@ -71,7 +71,8 @@
 //! | [`motion`] | Node hierarchy, animations, skins and morph targets |
 //! | [`environment`] | Environment maps, spherical harmonics, procedural sky, sun extraction |
 //! | [`geometry`], [`levels`], [`mips`] | Shapes, levels of detail, triangle order, mip levels |
-//! | [`bounds`], [`boxes`], [`frustum`], [`renderables`], [`draw_list`], [`draw_options`], [`batch`] | Culling, sorting, batching |
+//! | [`bounds`], [`boxes`], [`frustum`] | Bounding boxes and frustum culling |
+//! | [`renderables`], [`draw_list`], [`draw_options`], [`batch`] | Sorted draw lists and batches |
 //! | [`color`], [`color_table`], [`picture`] | Color conversions, `.cube` tables, image files |
 //! | [`memory`], [`progress`], [`parallel`], [`error`] | Memory budget, progress reports, threads, errors |
 
