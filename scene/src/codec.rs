@@ -5,7 +5,7 @@
 
 #![cfg_attr(
     not(feature = "gltf"),
-    allow(dead_code, unused_imports, reason = "import alone reads headers of textures apart")
+    allow(dead_code, unused_imports, reason = "only the importer reads texture headers separately")
 )]
 
 mod catch;

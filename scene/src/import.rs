@@ -94,8 +94,8 @@ pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneEr
 ///
 /// Returns a one-line error with the file and the reason. Files fail if they are unreadable or truncated, have broken
 /// references, or require unsupported extensions. Values that are not finite, vectors of zero length, and undecodable
-/// images fail too. So do sizes over the limits of this module, paths outside of the file's folder, and an exceeded
-/// memory budget.
+/// images fail too. Further reasons are sizes over the limits of this module, paths outside of the file's folder, and
+/// an exceeded memory budget.
 pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
     let length = file_bytes(path)?;
     let over = |budget| SceneError::Memory { file: path.into(), at: "the file".into(), budget };

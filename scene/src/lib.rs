@@ -11,9 +11,9 @@
 //! # When to use it
 //!
 //! Use it to load glTF scenes and HDR environments for a renderer of your own, or for
-//! [`framegraph-passes`](https://crates.io/crates/framegraph-passes), which uploads and draws them. Untrusted files are
-//! safe to load: an invalid file returns a one-line error with the file, the place and the reason. Memory use has a limit
-//! ([`LoadOptions::memory`]), and files outside of the scene's folder are not read by default.
+//! [`framegraph-passes`](https://crates.io/crates/framegraph-passes), which uploads and draws them. Untrusted files
+//! are safe to load: an invalid file returns a one-line error with the file, the place and the reason. Memory use has
+//! a limit ([`LoadOptions::memory`]), and files outside of the scene's folder are not read by default.
 //!
 //! Do not use it as a general glTF library: it keeps only what rendering needs, cannot write files, and discards
 //! `extras` except its own member. It has no scene editing, physics or streaming. For lossless access to documents, use
@@ -37,10 +37,10 @@
 //!
 //! # Conventions
 //!
-//! Lengths are in meters, light is in lux, candela and nits, and colors are linear Rec.709. Axes are right-handed with y
-//! up; cameras look along −z. Transforms are `f64`, so that scenes far from the origin do not jitter. Loaders validate
-//! their input: a loaded [`Scene`] has finite numbers and valid ids, and [`Scene::check`] verifies this for scenes built
-//! in code.
+//! Lengths are in meters, light is in lux, candela and nits, and colors are linear Rec.709. Axes are right-handed with
+//! y up; cameras look along −z. Transforms are `f64`, so that scenes far from the origin do not jitter. Loaders
+//! validate their input: a loaded [`Scene`] has finite numbers and valid ids, and [`Scene::check`] verifies this for
+//! scenes built in code.
 //!
 //! # Features
 //!
@@ -58,8 +58,8 @@
 //! | `exr` | OpenEXR environments; writing OpenEXR images |
 //! | `serde` | Serialization of settings |
 //!
-//! Without any feature the data types, built-in scenes, cameras, the procedural sky, and Radiance `.hdr` and floating-point
-//! KTX environments remain.
+//! Without any feature the data types, built-in scenes, cameras, the procedural sky, and Radiance `.hdr` and
+//! floating-point KTX environments remain.
 //!
 //! # Modules
 //!

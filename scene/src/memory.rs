@@ -35,7 +35,7 @@ struct Taken {
 /// Error: an allocation exceeds the memory budget.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{} of memory are needed, and {} are left of the {} that loading may take",
+    "{} of memory are needed, but only {} are left of the {} budget",
     mebibytes(*needed_bytes), mebibytes(*left_bytes), mebibytes(*limit_bytes)
 )]
 pub struct OverBudget {

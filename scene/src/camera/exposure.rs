@@ -5,9 +5,9 @@ pub const EV100_RANGE: (f32, f32) = (-16.0, 24.0);
 
 /// Returns the factor from luminance in nits to pre-exposed radiance at ISO 100: 1 / (1.2 · 2^EV100).
 ///
-/// With saturation-based sensitivity and lens factor q = 0.65, the saturation luminance at EV 0 is 1.2 nits (ISO
-/// 12232:2006; Lagarde and de Rousiers, "Moving Frostbite to PBR", 2014, section 5.1). Values outside [`EV100_RANGE`]
-/// are clamped; NaN becomes EV 0.
+/// With saturation-based sensitivity and lens factor q = 0.65, the saturation luminance at EV 0 is 1.2 nits. Values
+/// outside [`EV100_RANGE`] are clamped; NaN becomes EV 0. Sources: ISO 12232:2006; Lagarde and de Rousiers, "Moving
+/// Frostbite to PBR", 2014, section 5.1.
 #[must_use]
 pub fn exposure_from_ev100(ev100: f32) -> f32 {
     let ev100 = if ev100.is_nan() { 0.0 } else { ev100 };

@@ -11,10 +11,10 @@ pub enum CodecError {
     #[error("the file is empty")]
     NoBytes,
     /// The format is unknown.
-    #[error("it is no picture of a known format")]
+    #[error("its image format is unknown")]
     Unknown,
     /// The format is known but not supported for this purpose or in this build.
-    #[error("{0} pictures are not read here")]
+    #[error("{0} images are not supported here")]
     Kind(FileKind),
     /// The image has no texels.
     #[error("its size is {}×{}", size_texels[0], size_texels[1])]

@@ -173,7 +173,7 @@ fn sizes_over_the_limit_are_refused_before_anything_is_decoded() {
 #[test]
 fn other_kinds_are_told_apart_and_named() {
     let error = decode_8(b"GIF89a", 8).map(|_| ()).expect_err("it is not read").to_string();
-    assert_eq!(error, "GIF pictures are not read here");
+    assert_eq!(error, "GIF images are not supported here");
     assert!(matches!(decode_8(b"", 8), Err(CodecError::NoBytes)));
     assert!(matches!(decode_f32(b"hello", [8, 8]), Err(CodecError::Unknown)));
 }

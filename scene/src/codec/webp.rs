@@ -17,7 +17,7 @@ fn open(bytes: &[u8], max_side_texels: u32) -> Result<WebPDecoder<Cursor<&[u8]>>
     let (width, height) = decoder.dimensions();
     check_size([width, height], [max_side_texels; 2])?;
     if decoder.is_animated() {
-        return Err(CodecError::Other("it is an animation; use a still picture".into()));
+        return Err(CodecError::Other("it is an animation; use a still image".into()));
     }
     // The decoder allocates memory for the lossy frame before it compares the frame size with the image size.
     match lossy_size(bytes) {

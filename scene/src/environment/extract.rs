@@ -73,11 +73,11 @@ impl fmt::Display for SunExtraction {
             Self::None { contrast } => {
                 write!(
                     f,
-                    "the map has no sun: its brightest point is {contrast:.1} times as bright as what is around it"
+                    "the map has no sun: its brightest point is {contrast:.1} times as bright as its surroundings"
                 )
             }
-            Self::Apart => f.write_str("the sun is apart from the map already"),
-            Self::Filtered => f.write_str("light was made of the map already, its sun in it"),
+            Self::Apart => f.write_str("the sun is separate from the map already"),
+            Self::Filtered => f.write_str("the map has prefiltered light that includes its sun"),
         }
     }
 }

@@ -91,8 +91,7 @@ fn load(
     let cleaning = clean(&mut texels);
     let mut warnings = cleaning.warnings(&name, texels.len());
     if u64::from(width) != 2 * u64::from(height) {
-        warnings
-            .push(format!("{name}: {width}×{height} is not twice as wide as high; taken for a whole sphere anyway"));
+        warnings.push(format!("{name}: {width}×{height} is not twice as wide as high; interpreted as a full sphere"));
     }
     report(progress, path, step(2))?;
     Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, filtered: None, warnings })

@@ -1,7 +1,7 @@
 //! Windows against ringing: attenuate high bands at the price of blurred irradiance.
 //!
-//! The default is no window. For a sun in a dark sky with three bands, clamping at zero loses 3 % of energy, but a
-//! window that stops ringing raises the maximum error from 9 % to at least 14 %. Extracting the sun
+//! The default is no window. For a sun in a dark sky with three bands, clamping at zero loses 3 % of energy. A window
+//! that stops ringing raises the maximum error from 9 % to at least 14 %. Extracting the sun
 //! ([`extract_sun`](super::Environment::extract_sun)) is better than both.
 
 use std::f64::consts::PI;

@@ -96,7 +96,7 @@ fn resolve<'a>(source: &'a Source<'_>, values: Values, user: &str) -> Result<Ele
     // Columns of smaller matrices may be padded; no caller reads such matrices. Columns of four components have no
     // padding (section 3.6.2.4).
     if matches!(kind, Type::Mat2 | Type::Mat3) {
-        return Err(source.malformed(&at, "it holds 2×2 or 3×3 matrices, which nothing here reads"));
+        return Err(source.malformed(&at, "it holds 2×2 or 3×3 matrices, which are not supported"));
     }
     let count = accessor.count.0;
     if count == 0 {

@@ -43,7 +43,7 @@ pub(super) fn import(
                 cameras.push(camera);
                 attached.push(Attached { node: place, index });
             }
-            None => warnings.push(format!("{}: its camera looks nowhere and is left out", node.at)),
+            None => warnings.push(format!("{}: its camera has no view direction and is left out", node.at)),
         }
     }
     Ok(attached)

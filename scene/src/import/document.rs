@@ -44,7 +44,7 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
     fill_in(&mut json);
     // The schema types would accept an array as the fields of an object.
     if !json.is_object() {
-        return Err(malformed("it is no object; a glTF file is a JSON object with `asset`".into()));
+        return Err(malformed("it is not an object; a glTF file is a JSON object with `asset`".into()));
     }
     let root = serde_path_to_error::deserialize(&json).map_err(|error| {
         let path = error.path().to_string();

@@ -140,7 +140,7 @@ fn find<'a>(source: &'a Source<'_>, primitive: &Primitive, at: String) -> Result
         match extension.id(&semantic.to_string()) {
             Some(Ok(id)) => drop(ids.insert(id)),
             Some(Err(())) => {
-                return Err(source.malformed(&at, format!("its id of {} is no whole number", semantic.to_string())));
+                return Err(source.malformed(&at, format!("its id of {} is not a whole number", semantic.to_string())));
             }
             None => {}
         }

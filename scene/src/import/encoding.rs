@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(super) enum Base64Error {
     /// A byte is not a base64 digit.
-    #[error("the byte {byte} at {at} is no digit")]
+    #[error("the byte {byte} at {at} is not a base64 digit")]
     Digit {
         /// Position in the text.
         at: usize,

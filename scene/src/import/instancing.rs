@@ -22,7 +22,7 @@ pub(super) fn read(source: &Source<'_>, node: usize, at: &str) -> Result<Option<
         None => Ok(None),
         Some(index) => match index.as_u64().and_then(|index| usize::try_from(index).ok()) {
             Some(index) => Ok(Some(index)),
-            None => Err(source.malformed(&at, format!("its {name} is no index of an accessor"))),
+            None => Err(source.malformed(&at, format!("its {name} is not an accessor index"))),
         },
     };
     let vectors =

@@ -155,7 +155,7 @@ fn read_skin(
         let index = joint.value();
         let found =
             places.get(index).ok_or_else(|| source.malformed(&at, beyond("node", index, &source.root.nodes)))?;
-        found.ok_or_else(|| source.malformed(&at, format!("its joint, node {index}, hangs on no root")))
+        found.ok_or_else(|| source.malformed(&at, format!("its joint, node {index}, is not below a root node")))
     };
     let joints: Vec<usize> = skin.joints.iter().map(place).collect::<Result<_, _>>()?;
     if joints.is_empty() {

@@ -32,7 +32,7 @@ impl<'a> Object<'a> {
         if json.is_object() {
             Ok(Some(Self { source, at, json }))
         } else {
-            Err(source.malformed(&at, "it is no object"))
+            Err(source.malformed(&at, "it is not an object"))
         }
     }
 
@@ -114,7 +114,7 @@ impl<'a> Object<'a> {
 
     fn finite(&self, key: &str, value: &Value) -> Result<f32, SceneError> {
         let Some(number) = value.as_f64() else {
-            return Err(self.malformed(format!("its {key} is no number")));
+            return Err(self.malformed(format!("its {key} is not a number")));
         };
         let number = number as f32;
         if number.is_finite() { Ok(number) } else { Err(self.malformed(format!("its {key} is {number}"))) }

@@ -23,7 +23,7 @@ pub enum PoseError {
         count: usize,
     },
     /// A computed value is infinite or NaN.
-    #[error("{animation}: at {time_s} s {what} is not finite; choose another time, or mend the file")]
+    #[error("{animation}: at {time_s} s {what} is not finite; choose another time, or repair the file")]
     NotFinite {
         /// Name of the animation.
         animation: String,
@@ -34,7 +34,7 @@ pub enum PoseError {
     },
     /// An instance is moved beyond [`MAX_COORDINATE_M`].
     #[error(
-        "{animation}: at {time_s} s instance {instance:?} is more than {MAX_COORDINATE_M:e} m from the origin; choose another time, or mend the file"
+        "{animation}: at {time_s} s instance {instance:?} is more than {MAX_COORDINATE_M:e} m from the origin; choose another time, or repair the file"
     )]
     TooFar {
         /// Name of the animation.

@@ -71,7 +71,7 @@ pub enum KtxError {
         expected: u64,
     },
     /// A texture of a material is a cube map, a 3D texture or an array.
-    #[error("it has {faces} faces, depth {depth} and {layers} layers; write it as one flat picture")]
+    #[error("it has {faces} faces, depth {depth} and {layers} layers; write it as a single 2D image")]
     NotFlat {
         /// Number of faces.
         faces: u32,

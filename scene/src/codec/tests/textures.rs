@@ -103,7 +103,7 @@ fn blocks_equal_the_reference_transcoder() {
         };
         let texture = decoded(name, formats);
         if texture.format != format {
-            // One of several levels, or no whole blocks.
+            // Rejected files have one of several levels, or partial blocks.
             assert!(name.starts_with("odd") || name.starts_with("color_one_level"), "{line}");
             assert_eq!(texture.format, ImageFormat::Rgba8);
             continue;
@@ -155,7 +155,7 @@ fn broken_textures_say_why() {
         (with_u32(name, 12, 145), "its texels are of Vulkan format 145 and color model 166; write Basis"),
         (with_u32(name, 20, MAX + 4), "width in texels is 4100, over the limit of 4096"),
         (with_u32(name, 24, 0), "its size is 64×0"),
-        (with_u32(name, 36, 6), "it has 6 faces, depth 0 and 0 layers; write it as one flat picture"),
+        (with_u32(name, 36, 6), "it has 6 faces, depth 0 and 0 layers; write it as a single 2D image"),
         (with_u32(name, 40, 8), "it has 8 levels, more than a side of 64 texels has"),
         (with_u32(name, 44, 1), "its supercompression scheme is 1; write BasisLZ for ETC1S"),
         (with_u32("color_etc1s.ktx2", 44, 2), "its supercompression scheme is 2"),

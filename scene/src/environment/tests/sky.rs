@@ -8,8 +8,8 @@ use crate::color::luminance_from_rec709;
 use crate::environment::*;
 use crate::light::{Light, LightKind};
 
-/// Photometric values (IES RP-21, clear sky, sun at 40°): the sky gives 0.8 + 15.5 √sin 40° = 13.2 klx on the ground,
-/// the sun 127.5 e^(−0.21 m) = 92 klx. The sky is blue away from the sun.
+/// Photometric values of a clear sky with the sun at 40° (IES RP-21). The sky gives 0.8 + 15.5 √sin 40° = 13.2 klx on
+/// the ground, the sun 127.5 e^(−0.21 m) = 92 klx. The sky is blue away from the sun.
 #[test]
 fn the_sky_is_photometrically_plausible() {
     let sky = Sky::default();

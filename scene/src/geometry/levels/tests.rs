@@ -212,7 +212,7 @@ fn a_bevel_that_is_left_out_counts_for_the_face() {
     assert_eq!(off(&[0, 4, 5, 0, 5, 3], 0.2), None);
 }
 
-/// Where bitangents change sign, as in the middle of a mirrored texture, vertices are duplicated, and no triangle has
+/// Vertices are duplicated at places of opposite bitangents, as in the middle of a mirrored texture. No triangle has
 /// corners of both sides.
 #[test]
 fn the_sides_of_bitangents_are_kept_apart() {

@@ -167,7 +167,7 @@ fn errors_carry_the_path_in_the_json() {
         assert!(error.contains(&format!("JSON: {path}")), "{path}: {error}");
     }
     assert!(error(b"{}").contains("JSON: missing field `asset`"), "{}", error(b"{}"));
-    assert!(error(b"[]").contains("JSON: it is no object"), "{}", error(b"[]"));
+    assert!(error(b"[]").contains("JSON: it is not an object"), "{}", error(b"[]"));
 }
 
 /// Returns a GLB file of these chunks without padding.

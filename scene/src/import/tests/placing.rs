@@ -130,7 +130,7 @@ fn broken_instances_are_errors() {
     wrong(&|f| json!({"ROTATION": f.floats(4, &[0.0; 4])}), "the rotation of instance 0 has no length");
     wrong(&|f| json!({"SCALE": f.floats(3, &[1.0, f32::NAN, 1.0])}), "the transform of instance 0 is not finite");
     wrong(&|_| json!({"TRANSLATION": 99}), "accessor 99");
-    wrong(&|_| json!({"TRANSLATION": "no"}), "its TRANSLATION is no index of an accessor");
+    wrong(&|_| json!({"TRANSLATION": "no"}), "its TRANSLATION is not an accessor index");
     wrong(&|f| json!({"TRANSLATION": f.floats(4, &[0.0; 4])}), "has 4 components, not 3");
 }
 

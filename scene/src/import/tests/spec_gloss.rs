@@ -130,7 +130,7 @@ fn what_is_out_of_range_is_clamped_or_refused() {
     let at = "material 0: KHR_materials_pbrSpecularGlossiness: its ";
     for (extension, word) in [
         (json!({"diffuseFactor": [1, 1, 1]}), "diffuseFactor is not 4 numbers"),
-        (json!({"glossinessFactor": "shiny"}), "glossinessFactor is no number"),
+        (json!({"glossinessFactor": "shiny"}), "glossinessFactor is not a number"),
         (json!({"specularGlossinessTexture": {}}), "specularGlossinessTexture has no index"),
     ] {
         let error = with(extension).error();
