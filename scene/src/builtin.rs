@@ -1,4 +1,4 @@
-//! Built-in scenes, generated in code.
+//! Built-in scenes: procedural geometry, no files.
 
 mod balls;
 mod camera;
@@ -22,7 +22,7 @@ use super::scene::Scene;
 /// Names that [`builtin`] accepts, sorted.
 pub const NAMES: [&str; 9] = ["balls", "columns", "glass", "lamps", "lobes", "materials", "optics", "panes", "spheres"];
 
-/// Returns a built-in scene, generated in code.
+/// Returns a built-in scene.
 ///
 /// - `balls`: five materials that show an environment.
 /// - `columns`: a colonnade, for shadows and occlusion.

@@ -1,8 +1,8 @@
 //! Import of glTF 2.0, text and binary.
 //!
 //! The schema is that of the `gltf-json` crate. The accessors, validation and image loading of the `gltf` crate are not
-//! used, since they panic on some invalid indices, and no file may make this program panic. Every index is checked
-//! here, and a failed check names the file, the place and the reason.
+//! used, since they panic on some invalid indices. No file may make this program panic: every index is checked here,
+//! and a failed check names the file, the place and the reason.
 //!
 //! ```text
 //! bytes ─ container ─> JSON + BIN ─ uri, buffer ─> Source

@@ -268,8 +268,8 @@ impl Material {
         self.shadow_catcher.is_some() && self.unlit && self.alpha == AlphaMode::Blend
     }
 
-    /// Returns the texture coordinate set for tangents: that of the normal map, otherwise of the clear coat's,
-    /// otherwise of anisotropy, whose direction is relative to the tangent. `None` if tangents are not needed.
+    /// Returns the texture coordinate set for tangents: that of the normal map, otherwise of the clear coat's normal
+    /// map, otherwise of anisotropy. `None` if tangents are not needed.
     #[must_use]
     pub fn tangent_uv_set(&self) -> Option<u32> {
         let coat = self.clear_coat.and_then(|c| c.normal_texture);

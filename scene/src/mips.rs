@@ -1,6 +1,6 @@
 //! Mip levels of images: colors are averaged in linear light, normals as vectors.
 //!
-//! A level is the exact area average of the previous one: each texel covers `n / m` texels per axis, so odd sizes
+//! A level is the exact area average of the previous one: each texel covers `n / m` texels per axis. Odd sizes thus
 //! neither shift the image nor drop an edge. Levels are computed from unrounded values and rounded once, for storage.
 
 use std::array::from_fn;
@@ -50,8 +50,8 @@ pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
     }
 }
 
-/// Returns the maximum bytes that [`mip_levels`] needs beside the image. Stored levels take a third of the image; two
-/// float levels have a quarter and a sixteenth of its texels.
+/// Returns the maximum bytes that [`mip_levels`] needs in addition to the image. Stored levels take a third of the
+/// image; two float levels have a quarter and a sixteenth of its texels.
 #[must_use]
 pub fn working_bytes(width: u32, height: u32) -> u64 {
     let texels = u64::from(width) * u64::from(height);

@@ -9,7 +9,7 @@ pub use super::stage::Stage;
 /// Progress report: `done` of `total` items of `stage` are finished, `item` last.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
-    /// The stage of loading.
+    /// Stage of loading.
     pub stage: Stage,
     /// Number of finished items of this stage.
     pub done: usize,

@@ -43,7 +43,7 @@ pub(super) fn scene() -> Scene {
     scene
 }
 
-/// Half the length of the floor along z.
+/// Returns half the length of the floor along z.
 fn half_length() -> f64 {
     f64::from(PAIRS - 1) * SPACING_M / 2.0 + 1.0
 }
@@ -55,7 +55,7 @@ fn put_box(scene: &mut Scene, name: &str, material: MaterialId, min: DVec3, max:
     scene.add_instance(name, mesh, material, at);
 }
 
-/// Three steps, each 12 cm high and 35 cm deep, up to the floor.
+/// Adds three steps, each 12 cm high and 35 cm deep, up to the floor.
 fn steps(scene: &mut Scene, stone: MaterialId) {
     for step in 0..3_u32 {
         let reach = 0.35 * f64::from(2 - step);
@@ -95,7 +95,7 @@ fn colonnade(scene: &mut Scene, stone: MaterialId, dark: MaterialId) {
     }
 }
 
-/// A shaft with a rounded base and capital and a slight swelling, from y = 0 to the abacus.
+/// Returns a shaft with a rounded base and capital and a slight swelling, from y = 0 to the abacus.
 fn shaft() -> Mesh {
     let height = (COLUMN_M - 0.24) as f32;
     // Half circles from (r, top) to (r, bottom): mouldings.

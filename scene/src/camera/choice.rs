@@ -10,7 +10,7 @@ use super::projection::Projection;
 use crate::error::{CameraTextError, LookAtError, SceneError, one_line};
 use crate::scene::Scene;
 
-/// Camera choice of a user.
+/// Selection of a camera by a user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraChoice {
     /// Camera of the scene with this name.

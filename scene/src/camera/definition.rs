@@ -36,7 +36,7 @@ impl Camera {
         Ok(Self { name: String::new(), eye, world_from_view: rotation_towards(forward, up), projection })
     }
 
-    /// Returns the camera of a glTF node: at the node's origin, looking along its −z with +y up; the node's scale is
+    /// Returns the camera of a glTF node: at the node's origin, looking along its −z with +y up. The node's scale is
     /// ignored (glTF 2.0, section 3.10). Returns `None` if the node's z axis has zero length.
     #[must_use]
     pub fn of_node(name: &str, world_from_node: &DMat4, projection: Projection) -> Option<Self> {

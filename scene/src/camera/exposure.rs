@@ -14,8 +14,8 @@ pub fn exposure_from_ev100(ev100: f32) -> f32 {
     1.0 / (1.2 * ev100.clamp(EV100_RANGE.0, EV100_RANGE.1).exp2())
 }
 
-/// Returns the exposure value of camera settings: log2(N² / t · 100 / S) with f-number N, shutter time t in seconds and
-/// sensitivity S (ISO 2720:1974). Returns `None` unless all are positive and finite.
+/// Returns the exposure value of camera settings: log2(N² / t · 100 / S). N is the f-number, t the shutter time in
+/// seconds and S the sensitivity (ISO 2720:1974). Returns `None` unless all are positive and finite.
 #[must_use]
 pub fn ev100_from_settings(aperture: f32, shutter_s: f32, iso: f32) -> Option<f32> {
     let positive = |v: f32| v > 0.0 && v.is_finite();

@@ -16,7 +16,7 @@ pub(crate) struct Picture8 {
 pub(crate) struct Header {
     /// Width and height.
     pub size_texels: [u32; 2],
-    /// Bytes that decoding allocates beside the image.
+    /// Bytes that decoding allocates in addition to the image.
     pub working_bytes: u64,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct TextureHeader {
     pub size_texels: [u32; 2],
     /// Bytes of all decoded levels.
     pub image_bytes: u64,
-    /// Bytes that decoding allocates beside the levels.
+    /// Bytes that decoding allocates in addition to the levels.
     pub working_bytes: u64,
 }
 

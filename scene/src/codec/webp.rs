@@ -7,8 +7,8 @@ use image_webp::WebPDecoder;
 use super::error::CodecError;
 use super::picture::{Header, Picture8, check_size, opaque};
 
-/// Maximum number of bytes per texel that decoding allocates beside the image (RFC 9649). A lossy image has three-byte
-/// samples and planes of luma, chroma and alpha. A lossless one has four-byte samples and transform images.
+/// Maximum number of bytes per texel that decoding allocates in addition to the image (RFC 9649). A lossy image has
+/// three-byte samples and planes of luma, chroma and alpha. A lossless one has four-byte samples and transform images.
 const WORKING_BYTES: u64 = 8;
 
 /// Reads the header; rejects animations and sizes over the limit.

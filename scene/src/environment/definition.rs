@@ -52,8 +52,9 @@ impl Environment {
         luminance_from_rec709(self.map.average())
     }
 
-    /// Returns the exposure value at ISO 100 at which a white diffuse card appears white: its luminance E / π times 1 /
-    /// (1.2 · 2^EV100) is 1. The card is lit by a hemisphere of the environment, and by the sun at 60° from its normal.
+    /// Returns the exposure value at ISO 100 at which a white diffuse card appears white. Its luminance E / π times 1 /
+    /// (1.2 · 2^EV100) is then 1. The card is lit by a hemisphere of the environment, and by the sun at 60° from its
+    /// normal.
     #[must_use]
     pub fn metered_ev100(&self, scene: &Scene) -> f32 {
         let sky_lux = std::f64::consts::PI * self.average_luminance_nits();

@@ -15,8 +15,8 @@ use super::equirect::EquirectMap;
 use crate::color::luminance_from_rec709;
 use crate::light::{Light, LightKind};
 
-/// Radius in radians (2.5°) around the brightest texel that is attributed to the sun: its disc and the texels over
-/// which cameras and resampling spread it.
+/// Radius in radians (2.5°) around the brightest texel that is attributed to the sun. It covers the disc and the texels
+/// over which cameras and resampling spread it.
 const CONE_RAD: f64 = 0.043_633;
 /// Radius of that cone in texels of a coarse map, if this is larger.
 const CONE_TEXELS: f64 = 2.5;

@@ -26,7 +26,7 @@ impl EquirectMap {
     ///
     /// Each level averages radiance by solid angle, so that stretched rows at the poles are not overweighted. The
     /// single texel of the last level is the average over the sphere. Averages are computed in f32 and clamped to half
-    /// floats afterwards, so a sun that is clamped in the first level keeps its energy in the others.
+    /// floats afterwards. A sun that is clamped in the first level thus keeps its energy in the others.
     #[must_use]
     pub fn radiance_levels(&self) -> Vec<RadianceLevel> {
         let mut working = self.weighted();

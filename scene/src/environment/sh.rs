@@ -115,8 +115,8 @@ impl Sh {
     /// 0)` and multiplies by the albedo of a Lambertian surface. For constant radiance L the first coefficient is L and
     /// the others are zero.
     ///
-    /// With three bands this is Filament's form: radiance · K · {1, 2/3, 1/4} · K for 1; y, z, x; xy, yz, 3z²−1, zx,
-    /// x²−y².
+    /// With three bands this is Filament's form, radiance · K · {1, 2/3, 1/4} · K. The order of the polynomials is 1;
+    /// y, z, x; xy, yz, 3z²−1, zx, x²−y².
     #[must_use]
     pub fn irradiance_over_pi(&self) -> Vec<[f32; 3]> {
         let scale = scale();

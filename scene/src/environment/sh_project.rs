@@ -2,7 +2,7 @@
 //!
 //! Along a row the polynomials are trigonometric with degree 4 in the azimuth, so five Fourier coefficients describe
 //! the row. Across its height, three-point Gauss–Legendre quadrature in the cosine is exact for polynomials of degree
-//! 5. Sampling texel centers instead has an error of 2 % on a map of 32 rows, and fails on the two rows of a uniform
+//! 5. Sampling texel centers instead has an error of 2 % on a map of 32 rows. It fails on the two rows of a uniform
 //! environment.
 
 use std::f64::consts::{PI, TAU};

@@ -17,8 +17,9 @@ const SOLAR_CONSTANT_LUX: f64 = 127_500.0;
 /// Extinction of illuminance per air mass in clear weather (IES RP-21).
 const CLEAR_EXTINCTION: f64 = 0.21;
 
-/// Returns the relative air mass at a zenith angle: 1 at the zenith, about 38 at the horizon (Kasten and Young,
-/// "Revised optical air mass tables", Applied Optics 28, 1989).
+/// Returns the relative air mass at a zenith angle: 1 at the zenith, about 38 at the horizon.
+///
+/// Kasten and Young, "Revised optical air mass tables", Applied Optics 28, 1989.
 pub(super) fn air_mass(zenith_rad: f64) -> f64 {
     let zenith_deg = zenith_rad.min(PI / 2.0).to_degrees();
     1.0 / (zenith_rad.min(PI / 2.0).cos() + 0.505_72 * (96.079_95 - zenith_deg).powf(-1.6364))
@@ -35,8 +36,9 @@ pub(super) fn clear_sky_illuminance_lux(sin_elevation: f64) -> f64 {
 ///
 /// `toward_sun` is a unit vector. The illuminance uses the extinction of IES RP-21: 95 klx with the sun at 45°, 103 klx
 /// at the zenith. The color is the transmittance of Rayleigh scattering and haze at one wavelength per channel: 680,
-/// 550 and 440 nm. It is scaled to a luminance of 1, so the hue is approximate and the illuminance exact (Preetham,
-/// Shirley and Smits, "A Practical Analytic Model for Daylight", 1999, appendix A.1).
+/// 550 and 440 nm. It is scaled to a luminance of 1, so the hue is approximate and the illuminance exact.
+///
+/// Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", 1999, appendix A.1.
 #[must_use]
 pub fn sun_light(toward_sun: DVec3, turbidity: f64) -> Option<Light> {
     if toward_sun.y <= 0.0 {

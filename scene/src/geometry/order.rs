@@ -15,8 +15,8 @@ const PART_MORE: f64 = 1.05;
 /// Maximum increase of shaded vertices of the whole mesh at which parts are sorted.
 const WHOLE_MORE: f64 = 1.1;
 
-/// Returns the number of vertex shader invocations for `mesh` with a cache of 16 vertices: at most three per triangle,
-/// and half per triangle at best for a large mesh.
+/// Returns the number of vertex shader invocations for `mesh` with a cache of 16 vertices. The maximum is three per
+/// triangle; the optimum for large meshes is half per triangle.
 #[must_use]
 pub fn shaded_vertices(mesh: &Mesh) -> usize {
     misses(&mesh.indices, &mut Cache::new(mesh.vertex_count()))

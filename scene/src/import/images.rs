@@ -29,7 +29,7 @@ struct Encoded<'a> {
     header: TextureHeader,
     /// Block formats to which it may be transcoded.
     formats: BlockFormats,
-    /// Bytes that decoding needs beside the image, the encoded bytes included.
+    /// Bytes that decoding needs in addition to the image, the encoded bytes included.
     working_bytes: u64,
 }
 

@@ -41,13 +41,13 @@ pub(super) fn of(primitive: &Primitive) -> Option<Packed<'_>> {
 }
 
 impl Packed<'_> {
-    /// Index of the buffer view with the compressed mesh, unchecked.
+    /// Returns the index of the buffer view with the compressed mesh, unchecked.
     pub fn view(self) -> Option<usize> {
         self.json.get("bufferView")?.as_u64()?.try_into().ok()
     }
 
-    /// Returns the id of an attribute in the compressed mesh; `None` if the attribute is not compressed, `Err` if the
-    /// id is not a 32-bit number.
+    /// Returns the id of an attribute in the compressed mesh, or `None` if the attribute is not compressed. An id that
+    /// is not a 32-bit number is `Err`.
     pub fn id(self, semantic: &str) -> Option<Result<u32, ()>> {
         let id = self.json.get("attributes")?.get(semantic)?;
         Some(id.as_u64().and_then(|id| id.try_into().ok()).ok_or(()))

@@ -1,9 +1,9 @@
 //! Conversion of KHR_materials_pbrSpecularGlossiness to metallic-roughness materials.
 //!
-//! Filament shades such a material with the specular color as f0, a perceptual roughness of 1 − glossiness, and the
-//! diffuse color times 1 − max(f0) (`shading_model_specularGlossiness`). The equivalent in KHR_materials_specular has
-//! an index of refraction of 0: a dielectric of f0 1, tinted by the specular color. Textured roughness becomes a new
-//! image, since glossiness is inverted and stored in alpha.
+//! Filament's `shading_model_specularGlossiness` uses the specular color as f0 and a perceptual roughness of 1 −
+//! glossiness. The diffuse color is multiplied by 1 − max(f0). The equivalent in KHR_materials_specular has an index of
+//! refraction of 0: a dielectric of f0 1, tinted by the specular color. Textured roughness becomes a new image, since
+//! glossiness is inverted and stored in alpha.
 
 use glam::{Vec3, Vec4};
 use gltf_json as json;

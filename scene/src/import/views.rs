@@ -73,8 +73,8 @@ pub(super) fn decode(
     .collect()
 }
 
-/// Returns the buffers that need not be read, since every view of them is compressed: those marked as fallback, and
-/// those without a URI that are not the binary chunk.
+/// Returns the buffers that need not be read, since every view of them is compressed. These are marked as fallback, or
+/// have no URI and are not the binary chunk.
 pub(super) fn fallbacks(root: &Root, has_blob: bool) -> BTreeSet<usize> {
     let is_marked = |buffer: &Buffer| {
         let others = buffer.extensions.as_ref().map(|extensions| &extensions.others);

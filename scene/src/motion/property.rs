@@ -350,8 +350,8 @@ impl LightProperty {
 }
 
 impl CameraProperty {
-    /// Writes a value. Does nothing for a camera with another projection, for a field of view outside of 0 to π, or if
-    /// the near plane would not be before the far plane.
+    /// Writes a value. Cameras with another projection are unchanged. Values are ignored if the field of view would
+    /// leave 0 to π, or if the near plane would not be before the far plane.
     pub(super) fn write(self, camera: &mut Camera, value: &[f64]) {
         let value = value[0];
         match (self, &mut camera.projection) {

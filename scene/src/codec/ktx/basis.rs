@@ -30,8 +30,8 @@ impl Source {
     }
 }
 
-/// Returns the maximum number of bytes that transcoding ETC1S allocates beside its output. A block has indices of 8 bytes;
-/// code books have at most 65,535 endpoints and selectors, with their Huffman tables.
+/// Returns the maximum number of bytes that transcoding ETC1S allocates in addition to its output. A block has indices
+/// of 8 bytes. Code books have at most 65,535 endpoints and selectors, with their Huffman tables.
 pub(super) fn etc1s_working_bytes(size_texels: [u32; 2]) -> u64 {
     let blocks = ImageFormat::Etc2Rgba8.level_bytes(size_texels) / 16;
     8 * blocks + (2 << 20)

@@ -26,7 +26,7 @@ impl Scheme {
         }
     }
 
-    /// Returns the maximum number of bytes that decompression of a level allocates beside its output.
+    /// Returns the maximum number of bytes that decompression of a level allocates in addition to its output.
     pub fn working_bytes(self, level_bytes: u64) -> u64 {
         match self {
             Self::Plain => 0,

@@ -93,8 +93,9 @@ impl Fan {
         along && self.whole && self.corners.iter().all(each_goes) && first.zip(second).is_none_or(to_one)
     }
 
-    /// Returns true if this point and the other end of the edge, whose fan is `other`, share no neighbors except those
-    /// of the edge's own triangles. Otherwise the collapse would make the surface touch itself.
+    /// Returns true if this point and the other end of the edge share no neighbors except those of the edge's own
+    /// triangles. `other` is the fan of the other end. A collapse with further common neighbors would make the surface
+    /// touch itself.
     pub fn stays_whole(&self, edge: &Spoke, other: &Self) -> bool {
         let common = self.spokes.iter().filter(|own| other.spokes.iter().any(|theirs| theirs.rim == own.rim)).count();
         common == edge.pairs().count()
