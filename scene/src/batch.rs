@@ -1,61 +1,62 @@
-//! Instances of one mesh in one level of detail, of one surface and side, drawn by one instanced draw.
+//! Batches: instances of one mesh, level of detail, material and winding that share one instanced draw.
 
 use crate::levels::level_of;
 
-/// Instances that one draw draws: a range of an array of instance numbers.
+/// Range of an array of instance numbers that one draw call covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Batch {
-    /// Any of them, here the first: what all have in common is found by it.
+    /// Representative instance of the batch, here the first; all instances of a batch share its mesh and state.
     pub instance: u32,
-    /// Where in the array of numbers they begin.
+    /// First position of the batch in the array of instance numbers.
     pub first: u32,
-    /// How many they are.
+    /// Number of instances in the batch.
     pub count: u32,
-    /// The level of detail of their mesh; 0 is the mesh itself.
+    /// Level of detail of the mesh; 0 is the full mesh.
     pub level: u8,
 }
 
 impl Batch {
-    /// Their places in the array of numbers.
+    /// Returns the range of the batch in the array of instance numbers.
     #[must_use]
     pub fn range(&self) -> std::ops::Range<u32> {
         self.first..self.first + self.count
     }
 }
 
-/// In which order a list of instances is drawn.
+/// Order in which a list of instances is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BatchOrder {
-    /// As the list has it, where order shows: neighbors alone are drawn together.
+    /// Keeps the order of the list; only adjacent instances of one group share a draw. For blended surfaces.
     Kept,
-    /// All of a group together, the group of the first instance first: near before far, roughly, for a list that is sorted so.
+    /// Draws each group as a whole, in the order of its first instance: roughly front to back if the list is sorted so.
     FirstFirst,
-    /// All of a group together, by the numbers of groups, so that what groups share is set as rarely as possible.
+    /// Draws each group as a whole, ordered by group number, which minimizes state changes.
     ByGroup,
 }
 
-/// Which instances may be drawn together.
+/// Groups of instances that may share a draw.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Groups {
-    /// The group of each instance, by its number.
+    /// Group of each instance, indexed by instance number.
     pub of: Vec<u32>,
-    /// How many groups there are.
+    /// Number of groups.
     pub count: u32,
 }
 
 impl Groups {
-    /// Groups of equal keys, numbered in the order of keys.
+    /// Makes groups of equal keys, numbered in the order of keys.
     pub(crate) fn new<K: Ord + Copy>(keys: &[K]) -> Self {
         let mut distinct = keys.to_vec();
         distinct.sort_unstable();
         distinct.dedup();
-        // Every key is among them.
+        // `distinct` contains every key.
         let of = keys.iter().map(|key| distinct.partition_point(|other| other < key) as u32).collect();
         Self { of, count: distinct.len() as u32 }
     }
 
-    /// Appends the instances of `list` to `numbers` as they are drawn, within a group in the order of the list, and returns
-    /// the draws. `levels` has the level of detail of each instance by its number, or nothing where all are drawn whole.
+    /// Appends the instances of `list` to `numbers` in drawing order and returns the draws.
+    /// Within a group the order of the list is kept. `levels` holds the level of detail of each instance by its number;
+    /// if it is empty, all instances use the full mesh.
     #[must_use]
     pub fn batches(&self, list: &[u32], levels: &[u8], order: BatchOrder, numbers: &mut Vec<u32>) -> Vec<Batch> {
         let level = |instance: u32| level_of(levels, instance);
@@ -90,7 +91,7 @@ impl Groups {
         for group in &groups {
             counts[*group as usize] += 1;
         }
-        // Where the next instance of each group goes; at first none has a place.
+        // Next free slot of each group; initially unassigned.
         const NO_PLACE: u32 = u32::MAX;
         let (mut places, mut next) = (vec![NO_PLACE; counts.len()], base);
         let mut open = |group: usize, places: &mut [u32]| {
@@ -143,7 +144,7 @@ mod tests {
         assert_eq!(Groups::default().batches(&[], &[], BatchOrder::ByGroup, &mut Vec::new()), []);
     }
 
-    /// Of a group what is drawn in the same level is drawn together.
+    /// Within a group, one draw covers instances of one level of detail.
     #[test]
     fn levels_are_drawn_apart() {
         let levels = [0, 2, 1, 0, 2, 1];

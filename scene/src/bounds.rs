@@ -1,17 +1,16 @@
-//! Axis-aligned bounding boxes, in f64 so that transforming one stays conservative far from the
-//! origin.
+//! Axis-aligned bounding boxes in f64, so that transformed boxes stay conservative far from the origin.
 
 use glam::{DMat4, DVec3, Vec3};
 
-/// Largest distance from the origin that a scene may reach, in meters: squares of it stay finite in f32.
+/// Maximum distance of a scene from the origin, in meters; squares of it stay finite in f32.
 pub const MAX_COORDINATE_M: f64 = 1e18;
 
 /// An axis-aligned box in meters. Empty when any `min` exceeds its `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// The smallest coordinates, in meters.
+    /// Minimum corner, in meters.
     pub min: DVec3,
-    /// The largest coordinates, in meters.
+    /// Maximum corner, in meters.
     pub max: DVec3,
 }
 
@@ -22,11 +21,11 @@ impl Default for Aabb {
 }
 
 impl Aabb {
-    /// The box that holds nothing: the neutral element of [`union`](Self::union).
+    /// Empty box: the neutral element of [`union`](Self::union).
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
-    /// The smallest box around `points`; empty for none. Non-finite points are the caller's error
-    /// (the importer refuses them).
+    /// Returns the smallest box around `points`, or an empty box if there are none. Points must be finite; the importer
+    /// rejects others.
     #[must_use]
     pub fn from_points(points: &[Vec3]) -> Self {
         let mut bounds = Self::EMPTY;
@@ -36,25 +35,25 @@ impl Aabb {
         bounds
     }
 
-    /// This box grown to hold `point`.
+    /// Returns this box enlarged to contain `point`.
     #[must_use]
     pub fn including(self, point: DVec3) -> Self {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// The smallest box that holds both.
+    /// Returns the smallest box that contains both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Whether the box holds no point at all. A single point is not empty.
+    /// Returns true if the box contains no point. A box of a single point is not empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
-    /// The middle of the box, in meters; the origin for an empty box.
+    /// Returns the center of the box in meters; the origin for an empty box.
     #[must_use]
     pub fn center(&self) -> DVec3 {
         if self.is_empty() {
@@ -63,7 +62,7 @@ impl Aabb {
         (self.min + self.max) * 0.5
     }
 
-    /// Half the edge lengths, in meters; zero for an empty box.
+    /// Returns half the edge lengths in meters; zero for an empty box.
     #[must_use]
     pub fn half_extent(&self) -> DVec3 {
         if self.is_empty() {
@@ -72,13 +71,13 @@ impl Aabb {
         (self.max - self.min) * 0.5
     }
 
-    /// The radius in meters of the sphere around [`center`](Self::center) through the corners.
+    /// Returns the radius in meters of the sphere around [`center`](Self::center) through the corners.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.half_extent().length()
     }
 
-    /// The eight corners, x varying fastest. Meaningless for an empty box.
+    /// Returns the eight corners, x varying fastest. Meaningless for an empty box.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {
@@ -90,9 +89,9 @@ impl Aabb {
         })
     }
 
-    /// The box around this box after an affine transform: center moved, half extent multiplied by
-    /// the absolute values of the linear part (Arvo, "Transforming axis-aligned bounding boxes",
-    /// Graphics Gems 1990). Conservative, and tight for axis-aligned transforms.
+    /// Returns the bounding box of this box after an affine transform. The center is transformed; the half extent is
+    /// multiplied by the absolute values of the linear part. Conservative, and tight for axis-aligned transforms (Arvo,
+    /// "Transforming axis-aligned bounding boxes", Graphics Gems 1990).
     #[must_use]
     pub fn transformed(&self, to_from_this: &DMat4) -> Self {
         if self.is_empty() {
@@ -122,8 +121,8 @@ mod tests {
         assert!(Aabb::EMPTY.transformed(&DMat4::IDENTITY).is_empty());
     }
 
-    /// Every corner of the source lies in the transformed box, also under mirroring and shear, and
-    /// for a rotation by 90° the box is exact.
+    /// The transformed box contains every transformed corner, also under mirroring and shear. For a rotation by 90° it
+    /// is exact.
     #[test]
     fn transformed_box_holds_every_transformed_corner() {
         let source = Aabb { min: DVec3::new(-1.0, 0.5, 2.0), max: DVec3::new(3.0, 0.75, 9.0) };

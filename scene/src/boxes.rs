@@ -1,4 +1,4 @@
-//! Bounding boxes as arrays of coordinates, and which of many lie within planes: arithmetic that compilers turn into SIMD.
+//! Bounding boxes as arrays of coordinates, tested against planes with arithmetic that compilers vectorize.
 
 use std::ops::Range;
 
@@ -6,40 +6,41 @@ use glam::{DVec3, DVec4};
 
 use super::bounds::Aabb;
 
-/// Boxes that are tested together: a whole number of registers of any width, and few enough for the first cache.
+/// Boxes per block: a multiple of every SIMD width, and small enough for the L1 cache.
 const BLOCK: usize = 64;
-/// Half the size of a box that no plane keeps; times zero it is zero, which is not so for infinity.
+/// Half size of a padding box, which every plane rejects. Finite, since infinity times zero is NaN.
 const NOWHERE: f32 = -1e30;
-/// What f32 may be off by in the sum that is compared, over the largest of its terms: some ten roundings of 2⁻²⁴ each.
+/// Relative f32 rounding error of the compared sum, about ten roundings of 2⁻²⁴ each.
 const SLACK: f64 = 1.0 / (1 << 20) as f64;
-/// Boxes for which another thread is worth waking: testing them takes some ten times as long.
+/// Minimum number of boxes for which waking another thread pays off; testing that many takes about ten times as long.
 const WORTH_A_THREAD: usize = 1 << 15;
 
-/// Boxes by number, an array a coordinate, in f32 about a point amid them: 24 bytes a box. Of each 64 in a row there is what
-/// encloses them all, so that where neighbors in number are neighbors in space, most are settled together.
+/// Bounding boxes in f32 relative to a common center, one array per coordinate: 24 bytes a box.
+/// Each block of 64 boxes has an enclosing box. Blocks of spatially close boxes are therefore accepted or rejected as a
+/// whole.
 #[derive(Clone, Debug, Default)]
 pub struct BoxArrays {
     about: DVec3,
-    /// The largest coordinate of any finite box, about that point.
+    /// Largest absolute coordinate of a finite box, relative to the common center.
     largest_m: f64,
     len: usize,
-    /// Middles and half sizes, x, y, z each; padded to whole blocks with boxes that are nowhere.
+    /// Centers and half sizes, each as x, y, z; padded to whole blocks with boxes that every plane rejects.
     middle: [Vec<f32>; 3],
     half: [Vec<f32>; 3],
     blocks: Vec<Block>,
 }
 
-/// What encloses the boxes of a block.
+/// Enclosing box of a block.
 #[derive(Clone, Copy, Debug)]
 struct Block {
-    /// No number where a box is not finite, which no comparison settles then.
+    /// NaN if a box of the block is not finite, so that no comparison decides for the block.
     middle: [f32; 3],
     half: [f32; 3],
-    /// Whether all are boxes: of these, all are seen if what encloses them is.
+    /// True if the block has neither empty boxes nor padding, so that it can be accepted as a whole.
     full: bool,
 }
 
-/// How boxes lie to planes.
+/// Result of testing a block against planes.
 enum Seen {
     All,
     None,
@@ -47,7 +48,7 @@ enum Seen {
 }
 
 impl BoxArrays {
-    /// Those of `bounds`.
+    /// Builds the arrays from `bounds`.
     #[must_use]
     pub fn new(bounds: &[Aabb]) -> Self {
         let whole = bounds.iter().filter(|b| is_finite(b)).fold(Aabb::EMPTY, |all, own| all.union(*own));
@@ -64,10 +65,10 @@ impl BoxArrays {
         arrays
     }
 
-    /// Replaces boxes of these numbers; in the order of their numbers is fastest.
+    /// Replaces the boxes with these numbers; fastest in ascending order.
     ///
     /// # Panics
-    /// When there is no such box.
+    /// If a number is out of range.
     pub fn replace<'a>(&mut self, boxes: impl Iterator<Item = (usize, &'a Aabb)>) {
         let mut touched = None;
         for (number, bounds) in boxes {
@@ -81,7 +82,7 @@ impl BoxArrays {
         touched.into_iter().for_each(|block| self.enclose(block));
     }
 
-    /// Finds what encloses the boxes of a block.
+    /// Recomputes the enclosing box of a block.
     fn enclose(&mut self, block: usize) {
         let range = block * BLOCK..(block + 1) * BLOCK;
         let mut own = Block { middle: [0.0; 3], half: [NOWHERE; 3], full: true };
@@ -110,7 +111,7 @@ impl BoxArrays {
         assert!(number < self.len, "box {number} of {}", self.len);
         let (middle, half) = match (bounds.is_empty(), is_finite(bounds)) {
             (true, _) => (DVec3::ZERO, DVec3::splat(NOWHERE.into())),
-            // Nobody knows where it is: no comparison holds for it, so it is kept.
+            // The position is unknown: NaN fails every comparison, so the block is kept.
             (false, false) => (DVec3::NAN, DVec3::ZERO),
             (false, true) => (bounds.center() - self.about, bounds.half_extent()),
         };
@@ -123,12 +124,13 @@ impl BoxArrays {
         }
     }
 
-    /// Appends the numbers of the boxes that reach into all half spaces, in order. A plane's half space is where the product
-    /// with its normal, of a point seen from `eye`, plus its fourth number is at least zero; normals have length one.
+    /// Appends the numbers of the boxes that intersect all half spaces, in ascending order. A point p lies in the half
+    /// space of a plane if dot(p − `eye`, normal) plus the fourth component is at least zero. Normals must have unit
+    /// length.
     ///
-    /// What is left out certainly lies outside of one plane. What is kept may miss the planes by what f32 cannot tell, a
-    /// millionth of the scene's size, and may lie beyond an edge where two of them meet. An empty box is left out, one that
-    /// is not finite is kept. Many boxes are tested on the threads of `pool` too.
+    /// The test is conservative. Boxes within f32 rounding of a plane (a millionth of the scene's size) are kept, as
+    /// are boxes beyond an edge where two planes meet. Empty boxes are rejected and non-finite boxes are kept. Large
+    /// sets are also tested on the threads of `pool`.
     pub fn reaching(&self, eye: DVec3, planes: &[DVec4], pool: Option<&rayon::ThreadPool>, found: &mut Vec<u32>) {
         let planes: Vec<Half> = planes.iter().map(|plane| self.half_space(eye, *plane)).collect();
         let threads = pool.map_or(1, |pool| pool.current_num_threads() + 1).min(self.len / WORTH_A_THREAD);
@@ -155,14 +157,14 @@ impl BoxArrays {
     }
 }
 
-/// As [`test_portable`], compiled for processors with AVX2, too, which test eight boxes at once; which it is, is found out when the program
-/// runs. Products and sums are not fused, so both find the same.
+/// Version of [`test_portable`] that is also compiled for AVX2, which tests eight boxes at once; selected at run time.
+/// Products and sums are not fused, so both versions return equal results.
 #[multiversion::multiversion(targets("x86_64+avx2"))]
 fn test(arrays: &BoxArrays, blocks: Range<usize>, planes: &[Half], found: &mut Vec<u32>) {
     test_portable(arrays, blocks, planes, found);
 }
 
-/// Appends the numbers of the boxes of `blocks` that reach into all half spaces.
+/// Appends the numbers of the boxes of `blocks` that intersect all half spaces.
 #[inline(always)]
 fn test_portable(arrays: &BoxArrays, blocks: Range<usize>, planes: &[Half], found: &mut Vec<u32>) {
     found.reserve(blocks.len() * BLOCK);
@@ -196,7 +198,7 @@ fn test_portable(arrays: &BoxArrays, blocks: Range<usize>, planes: &[Half], foun
 }
 
 impl Block {
-    /// Which of its boxes reach into all half spaces, as far as what encloses them tells.
+    /// Classifies a block by its enclosing box: all boxes inside, all outside, or undecided.
     #[inline(always)]
     fn seen(&self, planes: &[Half]) -> Seen {
         let mut all = self.full;
@@ -215,7 +217,7 @@ impl Block {
     }
 }
 
-/// A plane as boxes are compared with it: outside is what reaches less far along the normal.
+/// Plane in the form used by the test: a box is outside if it does not reach the plane along the normal.
 struct Half {
     normal: [f32; 3],
     least: f32,
@@ -247,8 +249,8 @@ mod tests {
             .collect()
     }
 
-    /// Whatever the exact test in f64 keeps is kept, at any distance from the origin, and hardly anything more; on any number
-    /// of threads the same.
+    /// Keeps every box that the exact f64 test keeps, at any distance from the origin, and few others. The result does
+    /// not depend on the number of threads.
     #[test]
     fn nothing_that_may_be_seen_is_left_out() -> Result<(), Box<dyn std::error::Error>> {
         for (middle, spread_m) in [(DVec3::ZERO, 20.0), (DVec3::new(1e6, -1e6, 5e5), 300.0), (DVec3::ONE, 1e-3)] {
@@ -278,7 +280,7 @@ mod tests {
         Ok(())
     }
 
-    /// What the processor's own instructions find is what those find that every one has. (Where it has no others, both are one.)
+    /// SIMD and portable versions return equal results. (On processors without AVX2 both are the portable one.)
     #[test]
     fn wide_registers_find_the_same() {
         let boxes = random_boxes(9 * BLOCK + 5, 20.0, DVec3::ONE);
@@ -308,7 +310,7 @@ mod tests {
         let near = Aabb { min: DVec3::ONE, max: DVec3::ONE * 2.0 };
         arrays.replace([(2, &near)].into_iter());
         assert_eq!(seen(&arrays), [1, 2]);
-        // Amid blocks that are seen, and not seen, as a whole.
+        // Between blocks that are accepted and rejected as a whole.
         for (other, kept) in [(near, 191), (far, 1)] {
             let mut boxes = [other; 192];
             (boxes[70], boxes[71]) = (Aabb::EMPTY, endless);
@@ -316,8 +318,8 @@ mod tests {
         }
     }
 
-    /// Boxes that neighbors in number have beside them are settled in blocks, and the outcome is that of each alone: all blocks' boxes
-    /// are mixed for the comparison, so that no block is settled.
+    /// Accepting or rejecting whole blocks gives the result of testing each box. For comparison, boxes are shuffled so
+    /// that no block can be decided as a whole.
     #[test]
     fn blocks_settle_what_boxes_would() -> Result<(), Box<dyn std::error::Error>> {
         let count = 64 * 64;
@@ -349,7 +351,7 @@ mod tests {
             }
         }
         assert!(settled.iter().all(|count| *count > 100), "{settled:?}");
-        // What moves away takes its block with it.
+        // Moving a box updates the bounds of its block.
         let away = Aabb { min: DVec3::splat(900.0), max: DVec3::splat(901.0) };
         apart.replace((0..count).map(|i| (i, &away)));
         let fresh = BoxArrays::new(&vec![away; count]);

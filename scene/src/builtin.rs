@@ -1,4 +1,4 @@
-//! Scenes that need no file.
+//! Built-in scenes: procedural geometry, no files.
 
 mod balls;
 mod camera;
@@ -19,28 +19,27 @@ pub use metal::{METALS, Metal};
 use super::error::SceneError;
 use super::scene::Scene;
 
-/// The names [`builtin`] knows, sorted.
+/// Names that [`builtin`] accepts, sorted.
 pub const NAMES: [&str; 9] = ["balls", "columns", "glass", "lamps", "lobes", "materials", "optics", "panes", "spheres"];
 
-/// Returns a scene made in code.
+/// Returns a built-in scene.
 ///
-/// - `balls`: an environment on five surfaces.
+/// - `balls`: five materials that show an environment.
 /// - `columns`: a colonnade, for shadows and occlusion.
 /// - `glass`: transmissive materials.
-/// - `lamps`: a thousand lamps of limited range; `lamps:N` has N of them, at most 65,536.
-/// - `lobes`: the lobes beside the metal-rough base, a row of balls each.
+/// - `lamps`: 1000 punctual lights of limited range; `lamps:N` has N of them, at most 65,536.
+/// - `lobes`: extensions of the metallic-roughness model, a row of balls for each.
 /// - `materials`: one object for each material feature.
-/// - `optics`: thin films, dispersion and diffuse transmission, a row each.
-/// - `panes`: blended panes that cross each other, and a ball within a ball; `panes:N` has N panes, at most 64.
+/// - `optics`: thin films, dispersion and diffuse transmission, a row for each.
+/// - `panes`: intersecting blended panes, and a ball within a ball; `panes:N` has N panes, at most 64.
 /// - `spheres`: metallic × roughness on a ground plane.
 ///
-/// The scenes have a camera each and, but for `lamps`, no lights or environment of their own: they are meant to stand
-/// under any sky. The same name gives the same scene to the bit on every machine whose `sin` and
-/// `pow` agree.
+/// Every scene has a camera. Only `lamps` has lights; no scene has an environment, so that any sky fits. A name gives
+/// the same scene, bit for bit, on every machine whose `sin` and `pow` agree.
 ///
 /// # Errors
 ///
-/// For an unknown name; the message lists the known ones.
+/// Fails for an unknown name; the message lists the known ones.
 pub fn builtin(name: &str) -> Result<Scene, SceneError> {
     match name {
         "balls" => Ok(balls::scene()),

@@ -1,4 +1,4 @@
-//! Cameras: where they stand, what they project, how long they expose.
+//! Cameras: position, projection and exposure.
 
 mod choice;
 mod definition;

@@ -1,61 +1,61 @@
-//! What loaders promise of a scene, checked.
+//! Validation of scenes: the guarantees of loaders, checked.
 
 use crate::mesh::MeshError;
 use crate::mips::level_count;
 use crate::scene::Scene;
 use crate::texture::{Image, TextureSlot};
 
-/// What is wrong with a scene. Numbers are positions in its arrays.
+/// First problem found in a scene. Numbers are positions in its arrays.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidScene {
-    /// A mesh breaks its promises.
+    /// A mesh is invalid.
     #[error("mesh {mesh}: {error}")]
     Mesh {
         /// Number of the mesh.
         mesh: usize,
-        /// The promise that is broken.
+        /// Violated guarantee.
         error: MeshError,
     },
-    /// A material names a texture or a set of coordinates that there is not.
+    /// A material refers to a texture or a set of texture coordinates that does not exist.
     #[error("material {material}: {slot:?}")]
     Slot {
         /// Number of the material.
         material: usize,
-        /// The slot, with what it names.
+        /// Slot with the invalid reference.
         slot: TextureSlot,
     },
-    /// A texture names an image or a sampler that there is not.
+    /// A texture refers to an image or a sampler that does not exist.
     #[error("texture {texture} names an image or sampler that is not in the scene")]
     Texture {
         /// Number of the texture.
         texture: usize,
     },
-    /// An image has no texels, levels of other sizes than its format asks for, or neither one level nor all.
+    /// An image has no texels, a level with the wrong number of bytes, or an incomplete mip chain.
     #[error("image {image} has {bytes} bytes in {levels} levels for its {texels} texels")]
     Image {
         /// Number of the image.
         image: usize,
-        /// Number of texels of its first level.
+        /// Number of texels of the first level.
         texels: u64,
-        /// Number of levels that it holds.
+        /// Number of levels.
         levels: usize,
-        /// Bytes of these levels.
+        /// Total bytes of all levels.
         bytes: u64,
     },
-    /// An instance names a mesh or a material that there is not, or its transform is not finite.
+    /// An instance refers to a mesh or a material that does not exist, or its transform is not finite.
     #[error("instance {instance} names a mesh or material that is not in the scene, or its transform is not finite")]
     Instance {
         /// Number of the instance.
         instance: usize,
     },
-    /// A number of a light is not finite.
+    /// A value of a light is not finite.
     #[error("light {light} has a number that is not finite")]
     Light {
         /// Number of the light.
         light: usize,
     },
-    /// The eye of a camera is not finite.
+    /// The position of a camera is not finite.
     #[error("camera {camera} has an eye that is not finite")]
     Camera {
         /// Number of the camera.
@@ -70,11 +70,12 @@ impl std::fmt::Debug for InvalidScene {
 }
 
 impl Scene {
-    /// Checks that ids are valid, meshes keep their promises and numbers are finite.
+    /// Checks that ids are valid, meshes are consistent and numbers are finite. Loaders return scenes for which this is
+    /// `Ok`.
     ///
     /// # Errors
     ///
-    /// The first thing that is wrong. Loaders return scenes for which this is `Ok`.
+    /// Returns the first problem found.
     pub fn check(&self) -> Result<(), InvalidScene> {
         for (i, mesh) in self.meshes.iter().enumerate() {
             mesh.check().map_err(|error| InvalidScene::Mesh { mesh: i, error })?;
@@ -117,7 +118,7 @@ impl Scene {
     }
 }
 
-/// Returns whether every level has the bytes of its size, and no level is missing that is not to be made.
+/// Returns true if every level has the bytes of its size, and the mip chain is complete or to be generated.
 fn holds_its_levels(image: &Image) -> bool {
     let side = image.format.block_side_texels();
     let has_whole_blocks = [image.width, image.height].iter().all(|texels| *texels > 0 && texels.is_multiple_of(side));

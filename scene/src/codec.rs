@@ -1,11 +1,11 @@
-//! Picture files, decoded and encoded.
+//! Decoding and encoding of image files.
 //!
-//! Formats that cost crates are features: `png`, `jpeg`, `webp`, `basisu`, `exr`. Every decoder takes the largest size that is accepted,
-//! which it checks before it allocates, and answers any bytes with a picture or an error.
+//! Formats that need dependencies are features: `png`, `jpeg`, `webp`, `basisu`, `exr`. Every decoder checks a size
+//! limit before it allocates. It returns an image or an error for any input and never panics.
 
 #![cfg_attr(
     not(feature = "gltf"),
-    allow(dead_code, unused_imports, reason = "import alone reads headers of textures apart")
+    allow(dead_code, unused_imports, reason = "only the importer reads texture headers separately")
 )]
 
 mod catch;
@@ -32,7 +32,7 @@ pub(crate) use picture::{Header, Picture8, PictureF32, TextureHeader, TextureLev
 
 use crate::texture::BlockFormats;
 
-/// Reads the header of what [`decode_8`] decodes.
+/// Reads the header of a file that [`decode_8`] accepts.
 #[cfg_attr(
     not(any(feature = "png", feature = "jpeg", feature = "webp")),
     allow(unused_variables, reason = "then every kind is refused")
@@ -49,7 +49,7 @@ pub(crate) fn header_8(bytes: &[u8], max_side_texels: u32) -> Result<Header, Cod
     })
 }
 
-/// Why bytes of this kind are not decoded.
+/// Returns the error for a kind of file that is not decoded.
 fn unread(kind: Option<FileKind>, bytes: &[u8]) -> CodecError {
     match kind {
         Some(kind) => CodecError::Kind(kind),
@@ -58,7 +58,7 @@ fn unread(kind: Option<FileKind>, bytes: &[u8]) -> CodecError {
     }
 }
 
-/// Decodes PNG, JPEG or WebP, as far as this build reads them; the content decides which.
+/// Decodes PNG, JPEG or WebP, as enabled in this build; the format is detected from the content.
 #[cfg_attr(
     not(any(feature = "png", feature = "jpeg", feature = "webp")),
     allow(unused_variables, reason = "then every kind is refused")
@@ -75,7 +75,7 @@ pub(crate) fn decode_8(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, C
     })
 }
 
-/// Reads the header of what [`decode_texture`] decodes. The bytes may be the first of a longer file.
+/// Reads the header of a file that [`decode_texture`] accepts. The bytes may be a prefix of a longer file.
 #[cfg_attr(not(feature = "basisu"), allow(unused_variables, reason = "then no format of blocks is made"))]
 pub(crate) fn texture_header(
     bytes: &[u8],
@@ -89,7 +89,8 @@ pub(crate) fn texture_header(
     header_8(bytes, max_side_texels).map(TextureHeader::from)
 }
 
-/// Decodes what [`decode_8`] decodes, or a KTX2 texture: to one of `formats` where it can be transcoded, to RGBA otherwise.
+/// Decodes a file that [`decode_8`] accepts, or a KTX2 texture. The texture is transcoded to one of `formats` if
+/// possible, otherwise to RGBA.
 #[cfg_attr(not(feature = "basisu"), allow(unused_variables, reason = "then no format of blocks is made"))]
 pub(crate) fn decode_texture(
     bytes: &[u8],
@@ -103,7 +104,7 @@ pub(crate) fn decode_texture(
     decode_8(bytes, max_side_texels).map(TextureLevels::from)
 }
 
-/// Width and height of what [`decode_f32`] decodes.
+/// Returns the width and height of a file that [`decode_f32`] accepts.
 pub(crate) fn header_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
     catch_panic(|| match FileKind::of(bytes) {
         Some(FileKind::Hdr) => hdr::header(bytes, max_texels),
@@ -113,7 +114,7 @@ pub(crate) fn header_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2],
     })
 }
 
-/// Decodes Radiance `.hdr` or, as far as this build reads it, OpenEXR; the content decides which.
+/// Decodes Radiance `.hdr` or, if enabled in this build, OpenEXR; the format is detected from the content.
 pub(crate) fn decode_f32(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
     catch_panic(|| match FileKind::of(bytes) {
         Some(FileKind::Hdr) => hdr::decode(bytes, max_texels),

@@ -1,40 +1,41 @@
-//! Tables of colors from `.cube` files, as grading programs write them (Adobe, "Cube LUT Specification" 1.0, 2013).
+//! Color lookup tables (LUTs) from `.cube` files, as written by color grading software (Adobe, "Cube LUT Specification"
+//! 1.0, 2013).
 //!
-//! The extensions of DaVinci Resolve are read too: a curve before a table in three dimensions, input ranges, video range.
+//! DaVinci Resolve's extensions are supported: a 1D table before a 3D table, input ranges, and video range.
 
 use crate::error::SceneError;
 use crate::read::read_file;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-/// Most entries along each axis of a table in three dimensions, as the specification says.
+/// Maximum number of entries along each axis of a 3D table, from the specification.
 pub const MAX_CUBE_ENTRIES: usize = 256;
-/// Most entries of a table of one dimension, as the specification says.
+/// Maximum number of entries of a 1D table, from the specification.
 pub const MAX_CURVE_ENTRIES: usize = 65536;
 
-/// A file is no table of colors.
+/// Error of loading a `.cube` file.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorTableError {
     /// The file cannot be read.
     #[error(transparent)]
     Read(#[from] SceneError),
-    /// A line is wrong.
+    /// A line is invalid.
     #[error("{}: line {line}: {fault}", .file.display())]
     Line {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// From 1.
+        /// Line number, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// Problem with the line.
         fault: ColorTableFault,
     },
-    /// The file ends too early, or has no table at all.
+    /// The file is truncated or contains no table.
     #[error("{}: {fault}", .file.display())]
     Whole {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// What is wrong.
+        /// Problem with the file.
         fault: ColorTableFault,
     },
 }
@@ -45,38 +46,38 @@ impl std::fmt::Debug for ColorTableError {
     }
 }
 
-/// What is wrong with a table of colors.
+/// Problem with a `.cube` file.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColorTableFault {
-    /// The bytes are no text.
+    /// The file is not text.
     #[error("it is not UTF-8")]
     Text,
-    /// A keyword comes after the numbers have begun, or twice.
+    /// A keyword is repeated or follows the first row of numbers.
     #[error("{0} comes a second time, or after the table has begun")]
     Late(&'static str),
-    /// A keyword has other values than it takes.
+    /// The values of a keyword are invalid.
     #[error("{keyword} takes {takes}")]
     Values {
-        /// The keyword.
+        /// Name of the keyword.
         keyword: &'static str,
-        /// What it takes.
+        /// Expected values.
         takes: &'static str,
     },
     /// A size is out of range.
     #[error("{keyword} is {value}; sizes go from 2 to {most}")]
     Size {
-        /// The keyword.
+        /// Name of the keyword.
         keyword: &'static str,
-        /// The size.
+        /// Size in the file.
         value: String,
-        /// The largest.
+        /// Maximum size.
         most: usize,
     },
     /// A row is not three finite numbers.
     #[error("a row of three finite numbers is needed, not `{0}`")]
     Row(String),
-    /// Numbers come before a size.
+    /// A row of numbers precedes the size.
     #[error("the table begins before LUT_1D_SIZE or LUT_3D_SIZE says how large it is")]
     NoSize,
     /// The domain is empty.
@@ -84,15 +85,15 @@ pub enum ColorTableFault {
         "a domain must begin below its end: DOMAIN_MIN below DOMAIN_MAX, and the first number of an input range below the second"
     )]
     Domain,
-    /// There are more rows than the size asks for.
+    /// The number of rows exceeds the size.
     #[error("there are more than the {0} rows that its size asks for")]
     TooManyRows(usize),
-    /// There are fewer rows than the size asks for.
+    /// The number of rows is below the size.
     #[error("there are {rows} rows, and its size asks for {needed}")]
     TooFewRows {
-        /// Rows that there are.
+        /// Number of rows in the file.
         rows: usize,
-        /// Rows that there should be.
+        /// Number of rows that the size requires.
         needed: usize,
     },
 }
@@ -103,18 +104,19 @@ impl std::fmt::Debug for ColorTableFault {
     }
 }
 
-/// Colors by colors, as a `.cube` file states them: a curve for each channel, a table in three dimensions, or both in turn.
+/// Color lookup table from a `.cube` file: a curve for each channel (1D), a 3D table, or a curve followed by a 3D
+/// table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorTable {
-    /// Applied first.
+    /// 1D table, applied first.
     curve: Option<Table>,
-    /// Applied after the curve.
+    /// 3D table, applied after the curve.
     cube: Option<Table>,
-    /// The input is converted to video range before the tables (`LUT_IN_VIDEO_RANGE`).
+    /// True if the input is converted to video range before the tables (`LUT_IN_VIDEO_RANGE`).
     is_video_in: bool,
-    /// The tables return video range, which is converted back (`LUT_OUT_VIDEO_RANGE`).
+    /// True if the tables return video range, which is converted back (`LUT_OUT_VIDEO_RANGE`).
     is_video_out: bool,
-    /// Lines that were ignored, with the reason; each names the file.
+    /// One warning for each ignored line, with the file name and the reason.
     pub warnings: Vec<String>,
 }
 
@@ -122,15 +124,16 @@ impl ColorTable {
     /// Reads a `.cube` file.
     ///
     /// # Errors
-    /// One line that names the file, the line and what is wrong.
+    /// Returns a one-line error with the file, the line and the problem.
     pub fn load(file: &Path) -> Result<Self, ColorTableError> {
         Self::load_bytes(file, &read_file(file)?)
     }
 
-    /// Reads bytes; `file` names them in errors. What a file claims takes no memory before its rows are there.
+    /// Parses the bytes of a `.cube` file; `file` is its name in errors. Memory use is bounded by the rows in the file,
+    /// not by the sizes it states.
     ///
     /// # Errors
-    /// As [`ColorTable::load`].
+    /// Returns the errors of [`ColorTable::load`] except those of reading the file.
     pub fn load_bytes(file: &Path, bytes: &[u8]) -> Result<Self, ColorTableError> {
         let text = str::from_utf8(bytes)
             .map_err(|_| ColorTableError::Whole { file: file.into(), fault: ColorTableFault::Text })?;
@@ -149,8 +152,8 @@ impl ColorTable {
         read.done(file).map_err(|fault| ColorTableError::Whole { file: file.into(), fault })
     }
 
-    /// Returns the color that the tables have for `color`, interpolated linearly between entries. A color beyond the domain
-    /// of a table is clamped to it.
+    /// Maps `color` through the tables, interpolated linearly between entries. Colors beyond the domain of a table are
+    /// clamped to it.
     pub fn sample(&self, color: DVec3) -> DVec3 {
         let [black, white] = VIDEO_RANGE;
         let input = if self.is_video_in { color * (white - black) + black } else { color };
@@ -160,19 +163,19 @@ impl ColorTable {
     }
 }
 
-/// Black and white in video range: codes 64 and 940 of 10 bits (Recommendation ITU-R BT.709-6, table 4.6).
+/// Black and white in video range: 64 and 940 of 10 bits (Recommendation ITU-R BT.709-6, table 4.6).
 const VIDEO_RANGE: [f64; 2] = [64.0 / 1023.0, 940.0 / 1023.0];
 
-/// A table of one or three dimensions.
+/// 1D or 3D table.
 #[derive(Clone, Debug, PartialEq)]
 struct Table {
-    /// Entries along each axis, at least 2.
+    /// Number of entries along each axis, at least 2.
     entries: usize,
-    /// In three dimensions; otherwise a curve for each channel.
+    /// True for a 3D table; false for a curve of each channel.
     cube: bool,
-    /// The color at the first entry of each axis, and that at the last.
+    /// Input colors of the first and the last entry of each axis.
     domain: [DVec3; 2],
-    /// Red fastest.
+    /// Output colors, red varying fastest.
     rows: Vec<[f32; 3]>,
 }
 
@@ -198,13 +201,13 @@ impl Table {
     }
 }
 
-/// Ignored lines that are listed; further ones are counted.
+/// Maximum number of ignored lines that are listed individually; further ones are counted.
 const MAX_WARNINGS: usize = 8;
 
-/// A file as far as it has been read.
+/// State of reading a file.
 #[derive(Debug, Default)]
 struct Reading {
-    /// Sizes of the curve and of the table in three dimensions.
+    /// Sizes of the 1D table and the 3D table.
     sizes: [Option<usize>; 2],
     /// `DOMAIN_MIN` and `DOMAIN_MAX`.
     domain: [Option<DVec3>; 2],
@@ -213,7 +216,7 @@ struct Reading {
     is_video_in: bool,
     is_video_out: bool,
     rows: Vec<[f32; 3]>,
-    /// Line and first word of the first unknown keywords.
+    /// Line and keyword of the first unknown keywords.
     unknown: Vec<(usize, String)>,
     unknown_count: usize,
 }
@@ -270,7 +273,7 @@ impl Reading {
         if is_new { Ok(()) } else { Err(late) }
     }
 
-    /// Returns the numbers of rows of the curve and of the table in three dimensions.
+    /// Returns the numbers of rows of the 1D table and the 3D table.
     fn needed(&self) -> Result<[usize; 2], ColorTableFault> {
         let [curve, cube] = self.sizes;
         if curve.is_none() && cube.is_none() {
@@ -299,7 +302,7 @@ impl Reading {
         let warnings = self.warnings(file);
         let cube_rows = self.rows.split_off(of_curve);
         let [curve, cube] = self.sizes;
-        // A domain is that of the file's input: of the table that is applied first.
+        // `DOMAIN_MIN` and `DOMAIN_MAX` describe the input of the file, hence of the table applied first.
         let curve_domain = self.domain_of(0, self.domain)?;
         let cube_domain = self.domain_of(1, if curve.is_some() { [None; 2] } else { self.domain })?;
         let table = |entries, cube, domain, rows| Table { entries, cube, domain, rows };
@@ -312,7 +315,7 @@ impl Reading {
         })
     }
 
-    /// Returns the domain of a kind of table: its range, else `[low, high]`, else 0 to 1.
+    /// Returns the domain of a table: its input range if stated, otherwise `[low, high]`, otherwise 0 to 1.
     fn domain_of(&self, kind: usize, [low, high]: [Option<DVec3>; 2]) -> Result<[DVec3; 2], ColorTableFault> {
         if self.sizes[kind].is_none() {
             return Ok([DVec3::ZERO, DVec3::ONE]);
@@ -321,7 +324,7 @@ impl Reading {
             Some(range) => range.map(DVec3::splat),
             None => [low.unwrap_or(DVec3::ZERO), high.unwrap_or(DVec3::ONE)],
         };
-        // A width that is no number would make coordinates that are none.
+        // An infinite or NaN width would make coordinates NaN.
         let width = domain[1] - domain[0];
         if width.cmpgt(DVec3::ZERO).all() && width.is_finite() { Ok(domain) } else { Err(ColorTableFault::Domain) }
     }
@@ -349,7 +352,7 @@ impl Reading {
     }
 }
 
-/// So many finite numbers, and nothing else.
+/// Parses exactly `N` finite numbers.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let mut found = [0.0; N];
     let mut words = text.split_whitespace();
@@ -367,7 +370,7 @@ mod tests {
         ColorTable::load_bytes(Path::new("looks/a.cube"), text.as_bytes())
     }
 
-    /// Red and blue change places.
+    /// Exchanges red and blue.
     const SWAPPED: &str =
         "TITLE \"swap\"\n# a comment\nLUT_3D_SIZE 2\n0 0 0\n0 0 1\n0 1 0\n0 1 1\n1 0 0\n1 0 1\n1 1 0\n1 1 1\n";
 
@@ -385,7 +388,7 @@ mod tests {
         Ok(())
     }
 
-    /// A curve of three entries over −0.5 to 1.5, then a table of two entries a side over 0 to 2.
+    /// A 1D table of three entries over −0.5 to 1.5, then a 3D table of two entries a side over 0 to 2.
     const SHAPED: &str = "TITLE \"shaper\"\nLUT_1D_SIZE 3\nLUT_1D_INPUT_RANGE -0.5 1.5\nLUT_3D_SIZE 2\n\
         LUT_3D_INPUT_RANGE 0.0 2.0\n0.0 0.1 0.2\n0.9 0.4 1.0\n2.0 1.6 1.2\n0.05 0.10 0.20\n0.80 0.15 0.10\n\
         0.10 0.90 0.25\n0.70 0.95 0.05\n0.00 0.20 1.00\n0.60 0.05 0.85\n0.15 0.65 0.75\n1.00 0.90 0.95\n";
@@ -406,7 +409,7 @@ mod tests {
             // Entries are f32, and the expected colors have seven digits.
             assert!((found - expected).abs().max_element() < 2e-7, "{color:?}: {found}, not {expected}");
         }
-        // Without ranges, DOMAIN_MIN and DOMAIN_MAX are those of the input, which the curve has.
+        // Without input ranges, DOMAIN_MIN and DOMAIN_MAX apply to the first table, the curve.
         let domain = "DOMAIN_MIN -0.5 -0.5 -0.5\nDOMAIN_MAX 1.5 1.5 1.5";
         let other = read(&SHAPED.replace("LUT_1D_INPUT_RANGE -0.5 1.5", domain))?;
         assert_eq!(other, shaped);
@@ -421,7 +424,7 @@ mod tests {
         let (input, output) = ("LUT_IN_VIDEO_RANGE\n", "LUT_OUT_VIDEO_RANGE\n");
         let identity = "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n";
         let color = DVec3::new(0.0, 0.5, 1.0);
-        // Codes 64, 502 and 940 of 1023.
+        // 64, 502 and 940 of 1023.
         let video = DVec3::new(0.06256109, 0.49071359, 0.91886608);
         let found = read(&format!("{input}{identity}"))?.sample(color);
         assert!((found - video).abs().max_element() < 1e-8, "{found}");

@@ -1,4 +1,4 @@
-//! What is drawn, in which order.
+//! Draw lists: visible instances in drawing order.
 
 use super::camera::Camera;
 use super::frustum::Frustum;
@@ -7,38 +7,40 @@ use super::radix::{sort_key, sort_upper_halves};
 use super::renderables::{DrawKind, DrawOrder, Renderables};
 use super::scene::Scene;
 
-/// Instance numbers of a scene by how they must be drawn. Order is a function of scene and camera:
-/// ties keep the scene's order.
+/// Visible instance numbers by kind of drawing. The order depends on scene and camera alone; ties keep the scene's
+/// order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DrawLists {
-    /// Opaque, of each priority nearest first, so that depth rejects what is behind.
+    /// Opaque instances, by priority, then front to back for early depth rejection.
     pub opaque: Vec<u32>,
-    /// Alpha-tested, of each priority nearest first.
+    /// Alpha-tested instances, by priority, then front to back.
     pub mask: Vec<u32>,
-    /// Transmissive and not blended, nearest first: drawn after all opaque ones, and casting no shadow.
+    /// Transmissive instances that are not blended, front to back. They are drawn after all opaque ones and cast no
+    /// shadow.
     pub transmit: Vec<u32>,
-    /// Of each of these, how many layers of them lie over one another before it: those of layer 0 have nothing before them.
-    /// Glass of one layer is not seen through glass of the same layer.
+    /// Layer of each instance in `transmit`. Instances of layer 0 have no other transmissive instance in front.
+    /// Surfaces of one layer are not visible through each other.
     pub transmit_layers: Vec<u8>,
-    /// Blended, of each priority farthest first, so that each covers what is behind it. Those with
-    /// [`global_blend_order`](crate::DrawOptions::global_blend_order) come before others of their priority.
+    /// Blended instances, by priority, then back to front. Instances with
+    /// [`global_blend_order`](crate::DrawOptions::global_blend_order) precede others of their priority.
     pub blend: Vec<u32>,
-    /// How many instances are outside of the view frustum.
+    /// Number of instances outside of the view frustum.
     pub culled: usize,
 }
 
 impl DrawLists {
-    /// The instances that `camera` may see in a picture of `width_over_height`, sorted, of a scene that is looked at once;
-    /// [`DrawLists::seen`] otherwise.
+    /// Returns the sorted instances that `camera` may see in an image of aspect ratio `width_over_height`. For a scene
+    /// that is drawn repeatedly, use [`DrawLists::seen`].
     #[must_use]
     pub fn for_camera(scene: &Scene, camera: &Camera, width_over_height: f64) -> Self {
         Self::seen(&Renderables::new(scene), camera, width_over_height, None)
     }
 
-    /// The same of what was made of a scene before; many instances are culled on the threads of `pool` too.
+    /// Returns the visible instances from precomputed [`Renderables`]. Many instances are culled on the threads of
+    /// `pool` too.
     ///
-    /// The distance is that of the bounds' center along the view direction. Blended surfaces that
-    /// intersect have no right order; that is the usual limit of sorted blending.
+    /// Instances are sorted by the distance of their bounds' center along the view direction. Intersecting blended
+    /// surfaces have no correct order, the usual limit of sorted blending.
     #[must_use]
     pub fn seen(of: &Renderables, camera: &Camera, width_over_height: f64, pool: Option<&rayon::ThreadPool>) -> Self {
         let frustum = Frustum::of_camera(camera, width_over_height);
@@ -65,7 +67,7 @@ impl DrawLists {
         lists
     }
 
-    /// Sorts by priority and blend order what is sorted by distance, where instances state them.
+    /// Sorts distance-sorted instances by priority and blend order, where instances set them.
     fn by_priority(&mut self, of: &Renderables, distance: impl Fn(u32) -> f32) {
         let orders = of.orders();
         if orders.is_empty() {
@@ -82,7 +84,7 @@ impl DrawLists {
         });
     }
 
-    /// The instances of `list` by how they are drawn, in its order; all others count as culled.
+    /// Splits `list` by kind of drawing and keeps its order; instances outside of the list count as culled.
     #[must_use]
     pub fn of_kinds(of: &Renderables, list: &[u32]) -> Self {
         let kind = |i: &u32| of.kinds()[*i as usize];
@@ -113,8 +115,8 @@ mod tests {
     use crate::material::{AlphaMode, Material};
     use crate::{DrawOptions, Instance, MaterialId, MeshId};
 
-    /// The order of Filament's `RenderPass::Command` keys: priority, then the order of what is blended globally, then distance,
-    /// then the order among equally far ones.
+    /// Matches Filament's `RenderPass::Command` keys: priority, then global blend order, then distance, then blend
+    /// order for equal distances.
     #[test]
     fn priorities_and_blend_orders_come_before_distance() {
         let mut scene = Scene::default();

@@ -1,15 +1,15 @@
-//! How an instance takes part in drawing: Filament's switches of renderables.
+//! Draw options of an instance, as in Filament's renderables.
 
-/// Layers of instances and channels of lights by default: the first of eight, as in Filament.
+/// Default layer mask of instances and channel mask of lights: the first of eight, as in Filament.
 pub const DEFAULT_MASK: u8 = 1;
 
-/// Priority of instances by default, the middle of 0 to 7, as in Filament.
+/// Default priority of instances, the middle of 0 to 7, as in Filament.
 pub const DEFAULT_PRIORITY: u8 = 4;
 
-/// The highest priority: such instances are drawn last.
+/// Maximum priority; its instances are drawn last.
 pub const MAX_PRIORITY: u8 = 7;
 
-/// How an instance takes part in drawing. Files state it in `extras`, see `docs/reference/files.md`.
+/// Draw options of an instance. In files they are part of `extras`, see `docs/reference/files.md`.
 ///
 /// ```
 /// use framegraph_scene::{DrawOptions, Material, Scene, geometry};
@@ -22,30 +22,33 @@ pub const MAX_PRIORITY: u8 = 7;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DrawOptions {
-    /// Layers that the instance is in, a bit each. A view draws an instance that is in one of its visible layers; others
-    /// neither show nor cast shadows. Filament's `RenderableManager::setLayerMask`.
+    /// Bit mask of the instance's layers. A view draws an instance if one of its layers is visible; hidden instances
+    /// cast no shadows. Filament's `RenderableManager::setLayerMask`.
     pub layers: u8,
-    /// Channels, a bit each: lights that share one light the instance. Filament's `RenderableManager::setLightChannel`.
+    /// Bit mask of light channels. A light affects the instance if they share a channel. Filament's
+    /// `RenderableManager::setLightChannel`.
     pub light_channels: u8,
-    /// When the instance is drawn among those of its kind, 0 to [`MAX_PRIORITY`]: lower ones first. Kinds are opaque,
-    /// alpha-tested and blended surfaces. Higher values count as [`MAX_PRIORITY`]. Surfaces that transmit are drawn by
-    /// distance alone. Filament's `RenderableManager::setPriority`.
+    /// Drawing priority among instances of one kind (opaque, alpha-tested or blended), 0 to [`MAX_PRIORITY`]; lower
+    /// ones are drawn first. Higher values count as [`MAX_PRIORITY`]. Transmissive surfaces are ordered by distance
+    /// alone. Filament's `RenderableManager::setPriority`.
     pub priority: u8,
-    /// Order of blended instances of one priority and one distance, lower ones first. Filament's
+    /// Order of blended instances of equal priority and distance; lower ones are drawn first. Filament's
     /// `RenderableManager::setBlendOrderAt`, which has 15 bits.
     pub blend_order: u16,
-    /// Blended instances with this flag are drawn before others of their priority, by `blend_order` and not by distance.
-    /// Filament's `RenderableManager::setGlobalBlendOrderEnabledAt`.
+    /// Draws a blended instance before others of its priority, ordered by `blend_order` instead of distance. Filament's
+    /// `RenderableManager::setGlobalBlendOrderEnabledAt`.
     pub global_blend_order: bool,
-    /// True if the instance casts shadows, where its material does. Filament's `RenderableManager::setCastShadows`.
+    /// True if the instance casts shadows, provided that its material does. Filament's
+    /// `RenderableManager::setCastShadows`.
     pub casts_shadows: bool,
-    /// True if shadows fall on the instance: shadow maps of all lights and contact shadows. Filament's
+    /// True if the instance receives shadows from shadow maps and contact shadows. Filament's
     /// `RenderableManager::setReceiveShadows`.
     pub receives_shadows: bool,
 }
 
 impl Default for DrawOptions {
-    /// The first layer and light channel, the middle priority, blended by distance, casting and receiving shadows.
+    /// Returns the first layer and light channel, the middle priority, distance-sorted blending, and shadows both cast
+    /// and received.
     fn default() -> Self {
         Self {
             layers: DEFAULT_MASK,
@@ -60,14 +63,14 @@ impl Default for DrawOptions {
 }
 
 impl DrawOptions {
-    /// Sixteen bits of what shading an instance depends on: the light channels in the lower eight, and 256 for an instance
-    /// that receives no shadows.
+    /// Returns the light state of an instance in sixteen bits: light channels in the lower eight, and bit 8 (256) if it
+    /// receives no shadows.
     #[must_use]
     pub fn light_bits(&self) -> u16 {
         u16::from(self.light_channels) | u16::from(!self.receives_shadows) << 8
     }
 
-    /// The priority, 0 to [`MAX_PRIORITY`].
+    /// Returns the priority, clamped to [`MAX_PRIORITY`].
     #[must_use]
     pub fn priority(&self) -> u8 {
         self.priority.min(MAX_PRIORITY)

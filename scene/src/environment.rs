@@ -1,8 +1,7 @@
-//! Light from all around: an equirectangular radiance map and, if known, the sun apart from it.
+//! Environments: an equirectangular radiance map and, if known, the sun as a separate light.
 //!
-//! A sun inside a map is the hardest case for everything that filters it (spherical harmonics ring,
-//! importance sampling never converges), so the procedural sky keeps its sun as a [`Light`](crate::Light) and the
-//! map free of it.
+//! A sun inside a map is difficult to filter: spherical harmonics ring, and importance sampling converges slowly. The
+//! procedural sky therefore excludes the sun from its map and returns it as a [`Light`](crate::Light).
 
 mod clean;
 mod cube;

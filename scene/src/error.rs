@@ -1,4 +1,4 @@
-//! What can be wrong with a scene. Every message is one line: the file, where in it, and why.
+//! Errors of loading scenes. Every message is one line: the file, the place in it, and the reason.
 
 mod camera;
 mod quantity;
@@ -15,72 +15,71 @@ pub use camera::{CameraTextError, LookAtError};
 pub use quantity::Quantity;
 pub use unsupported::Unsupported;
 
-/// Why a scene, an environment or a camera could not be had.
+/// Error of loading a scene, an environment or a camera.
 ///
-/// `Display` never contains a line break, whatever a file says: all text taken from files and from users is shown
-/// through [`one_line`].
+/// `Display` never contains a line break: text from files and users is printed through [`one_line`].
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// A file cannot be opened or read.
     #[error("{}: cannot be read: {source}", shown(file))]
     Read {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// The error of the operating system.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// A file breaks its format's rules, or holds values that cannot be drawn.
+    /// A file violates its format, or contains values that cannot be drawn.
     #[error("{}: {}: {}", shown(file), one_line(at), one_line(reason))]
     Malformed {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Where in the file: `accessor 3`, `mesh 0 primitive 1`.
+        /// Place in the file: `accessor 3`, `mesh 0 primitive 1`.
         at: String,
-        /// What is wrong there, for people: the rules of a format are too many to be told apart by programs.
+        /// Description of the problem, as text.
         reason: String,
     },
-    /// A picture does not decode.
+    /// An image cannot be decoded.
     #[error("{}: {}: does not decode: {}", shown(file), one_line(at), one_line(&error.to_string()))]
     Picture {
-        /// The picture's own file, or the file it is embedded in.
+        /// Path of the image, or of the file in which it is embedded.
         file: PathBuf,
-        /// Which picture: `image 3`, `environment`.
+        /// Image in the file: `image 3`, `environment`.
         at: String,
-        /// What is wrong with it.
+        /// Error of the decoder.
         error: CodecError,
     },
-    /// A file is valid but asks for something that is not read.
+    /// A valid file uses an unsupported feature.
     #[error("{}: {}", shown(file), one_line(&feature.to_string()))]
     Unsupported {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// What it asks for, and what to do instead.
+        /// Unsupported feature; its `Display` suggests an alternative.
         feature: Unsupported,
     },
-    /// Something is larger than this crate or the device accepts.
+    /// A quantity exceeds a limit of this crate or of the device.
     #[error("{}: {what} is {value}, over the limit of {limit}", shown(file))]
     TooLarge {
-        /// The file, or the name of the scene.
+        /// Path of the file, or name of the scene.
         file: PathBuf,
-        /// What is too large.
+        /// Quantity that is too large.
         what: Quantity,
-        /// How large it is, in the unit of the quantity.
+        /// Actual value, in the unit of the quantity.
         value: u64,
-        /// How large it may be.
+        /// Maximum value.
         limit: u64,
     },
-    /// A file that another one names is not to be had; the message is that of `error` behind the name of `file`.
+    /// A referenced file cannot be loaded. The message is that of `error`, preceded by the name of `file`.
     #[error("{}: {}: {error}", shown(file), one_line(at))]
     Named {
-        /// The file that asks for it.
+        /// Path of the referring file.
         file: PathBuf,
-        /// Where it does: `buffer 0`.
+        /// Place of the reference: `buffer 0`.
         at: String,
-        /// What is wrong with the file that is asked for.
+        /// Error of the referenced file.
         error: Box<SceneError>,
     },
-    /// A URI leads out of the folder of its file.
+    /// A URI points outside of the folder of its file.
     #[error(
         "{}: {}: the path {:?} leads out of the scene's folder (`LoadOptions::allow_outside` or `--allow-outside` reads it)",
         shown(file),
@@ -88,93 +87,93 @@ pub enum SceneError {
         one_line(uri)
     )]
     Outside {
-        /// The file that asks for it.
+        /// Path of the referring file.
         file: PathBuf,
-        /// Where it does: `image 3`.
+        /// Place of the reference: `image 3`.
         at: String,
         /// The URI.
         uri: String,
     },
-    /// Something does not fit into the memory that loading may take.
+    /// The memory budget for loading is exceeded.
     #[error(
         "{}: {}: {budget}; raise the budget (`LoadOptions::memory`, `--memory`), or make it smaller",
         shown(file),
         one_line(at)
     )]
     Memory {
-        /// The file, or the name of the scene.
+        /// Path of the file, or name of the scene.
         file: PathBuf,
-        /// What does not fit: `image 3 "wood", 8192×8192`.
+        /// Object that exceeds the budget: `image 3 "wood", 8192×8192`.
         at: String,
-        /// How much it needs, and how much there is.
+        /// Required and available memory.
         budget: OverBudget,
     },
     /// No built-in scene has this name.
     #[error("{:?} is neither a file nor a built-in scene (built in: {})", one_line(name), known.join(", "))]
     UnknownScene {
-        /// The name asked for.
+        /// Requested name.
         name: String,
-        /// The names there are.
+        /// Valid names.
         known: &'static [&'static str],
     },
     /// The scene has no material variant of this name.
     #[error("{}: it has no material variant {:?} (its variants: {})", shown(file), one_line(name), names(known))]
     UnknownVariant {
-        /// The file, or the name of the scene.
+        /// Path of the file, or name of the scene.
         file: PathBuf,
-        /// The name asked for.
+        /// Requested name.
         name: String,
-        /// The names there are.
+        /// Valid names.
         known: Vec<String>,
     },
-    /// A scene of panes has too many, or no number of them.
+    /// The number of panes in `panes:N` is invalid.
     #[error("panes:{}: a whole number from 0 to {most} is needed", one_line(count))]
     PaneCount {
-        /// The word after the colon.
+        /// Text after the colon.
         count: String,
-        /// The most that the scene takes.
+        /// Maximum number of panes.
         most: u32,
     },
-    /// The built-in scene of lamps has no such number of them.
+    /// The number of lights in `lamps:N` is invalid.
     #[error("lamps:{}: a whole number from 0 to {most} is needed", one_line(count))]
     LampCount {
-        /// What was written for the number.
+        /// Text after the colon.
         count: String,
-        /// The most.
+        /// Maximum number of lights.
         most: u32,
     },
     /// The scene has no camera of this name.
     #[error("the scene has no camera named {:?} (its cameras: {}; or use orbit)", one_line(name), names(known))]
     UnknownCamera {
-        /// The name asked for.
+        /// Requested name.
         name: String,
-        /// The names there are.
+        /// Valid names.
         known: Vec<String>,
     },
-    /// A camera written as text does not parse or cannot look anywhere.
+    /// The text of a camera is invalid or does not define a view.
     #[error("camera {:?}: {reason} (write NAME, orbit, or EX,EY,EZ:TX,TY,TZ:FOVY)", one_line(text))]
     Camera {
-        /// The text that should describe a camera.
+        /// Text of the camera.
         text: String,
-        /// What is wrong with it.
+        /// Problem with the text.
         reason: CameraTextError,
     },
-    /// A parameter of a generated scene, sky or table is outside its range.
+    /// A parameter of a generated scene, sky or table is out of range.
     #[error("{parameter} is {value}, outside {range}")]
     Parameter {
         /// Name of the parameter.
         parameter: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         value: f64,
-        /// What it may be, with the unit.
+        /// Valid range, with the unit.
         range: &'static str,
     },
-    /// The progress callback asked to stop.
+    /// The progress callback requested to stop.
     #[error("{}: interrupted while {stage}", shown(file))]
     Interrupted {
-        /// The file being loaded.
+        /// Path of the file being loaded.
         file: PathBuf,
-        /// The stage that was interrupted.
+        /// Stage that was interrupted.
         stage: Stage,
     },
 }
@@ -186,7 +185,7 @@ impl std::fmt::Debug for SceneError {
 }
 
 impl SceneError {
-    /// A rule of a format that `file` breaks at a place in it.
+    /// Returns the error for a violation of a format at a place in `file`.
     #[cfg(feature = "gltf")]
     pub(crate) fn malformed(file: &Path, at: impl Into<String>, reason: impl Into<String>) -> Self {
         Self::Malformed { file: file.into(), at: at.into(), reason: reason.into() }
@@ -201,8 +200,7 @@ fn names(known: &[String]) -> String {
     if known.is_empty() { "none".into() } else { one_line(&known.join(", ")) }
 }
 
-/// `text` on one line: control characters become spaces, and a text of more than 240 characters is
-/// cut, since a file may hold names of any length.
+/// Returns `text` on one line: control characters become spaces, and text of more than 240 characters is cut.
 #[must_use]
 pub fn one_line(text: &str) -> String {
     const LONGEST: usize = 240;

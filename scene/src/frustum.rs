@@ -1,11 +1,11 @@
-//! View frustum culling, conservative: an instance that may be visible is never culled.
+//! View frustum culling. Conservative: no visible instance is ever culled.
 
 use glam::{DVec3, DVec4};
 
 use super::bounds::Aabb;
 use super::camera::Camera;
 
-/// The view volume as planes in world axes *relative to the eye*, so that coordinates stay small.
+/// View frustum as planes in world axes *relative to the eye*, so that coordinates stay small.
 #[derive(Clone, Debug)]
 pub struct Frustum {
     eye: DVec3,
@@ -13,7 +13,7 @@ pub struct Frustum {
 }
 
 impl Frustum {
-    /// The view volume of `camera` for a picture of `width_over_height`.
+    /// Returns the frustum of `camera` for an image of aspect ratio `width_over_height`.
     #[must_use]
     pub fn of_camera(camera: &Camera, width_over_height: f64) -> Self {
         let planes = camera
@@ -25,15 +25,16 @@ impl Frustum {
         Self { eye: camera.eye, planes }
     }
 
-    /// Its planes: left, right, bottom, top, near, and far if there is one; unit normals inward, world axes, about the eye.
+    /// Returns the planes relative to the eye, in world axes: left, right, bottom, top, near, and far if it is finite.
+    /// Normals have unit length and point inward.
     #[must_use]
     pub fn planes(&self) -> &[DVec4] {
         &self.planes
     }
 
-    /// Whether any part of the box may be visible. `false` is certain: the box lies wholly outside of one
-    /// plane. `true` may be wrong for boxes beyond an edge of the volume. An empty box is not visible;
-    /// a box with a non-finite side is (unknown means keep).
+    /// Returns true if any part of the box may be visible. `false` is exact: the box lies outside of one plane. `true`
+    /// may be wrong for boxes beyond an edge of the frustum. Empty boxes are invisible; boxes with a non-finite side
+    /// count as visible.
     #[must_use]
     pub fn may_see(&self, bounds: &Aabb) -> bool {
         if bounds.is_empty() {
@@ -44,7 +45,7 @@ impl Frustum {
         self.planes.iter().all(|plane| {
             let normal = plane.truncate();
             let nearest = normal.dot(center) + plane.w + normal.abs().dot(half);
-            // NaN keeps the box; the slack covers rounding of the sums above.
+            // NaN keeps the box; the tolerance covers rounding of the sums above.
             let slack = 1e-12 * (center.abs().max_element() + half.max_element());
             nearest >= -slack || nearest.is_nan()
         })
@@ -61,8 +62,8 @@ mod tests {
             .expect("a plain camera")
     }
 
-    /// Brute force: whenever some sample of a box projects into the picture, the box is kept; and
-    /// the test does cull (a test that keeps everything would pass otherwise).
+    /// Brute force: a box is kept if any of its samples projects into the image. Some boxes must be culled, so a test
+    /// that keeps everything fails.
     #[test]
     fn nothing_visible_is_culled() {
         let projections = [

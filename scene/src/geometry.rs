@@ -1,4 +1,5 @@
-//! Vertex work that needs no file: parametric shapes, levels of detail, an order that is drawn faster, and for import flat normals, tangents and splitting.
+//! Geometry algorithms: parametric shapes, levels of detail, triangle order, and for import flat normals, tangents and
+//! vertex splitting.
 
 mod box_shape;
 #[cfg(feature = "gltf")]

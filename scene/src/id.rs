@@ -1,38 +1,38 @@
-//! Typed indices: a [`MeshId`](crate::MeshId) cannot be used where a [`MaterialId`](crate::MaterialId) is meant.
+//! Typed indices: a [`MeshId`](crate::MeshId) cannot be used in place of a [`MaterialId`](crate::MaterialId).
 
 use std::cmp::Ordering;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 
-/// The position of a `T` in the [`Scene`](super::Scene)'s array of `T`.
+/// Position of a `T` in the [`Scene`](super::Scene)'s array of `T`.
 ///
-/// A `u32`, typed by what it counts. It carries no reference to the scene it came from.
+/// A typed `u32`, without a reference to its scene.
 pub struct Id<T> {
     index: u32,
     of: PhantomData<fn() -> T>,
 }
 
 impl<T> Id<T> {
-    /// The id of the element at `index`.
+    /// Returns the id of the element at `index`.
     ///
     /// # Panics
     ///
-    /// When `index` does not fit in 32 bits; the importers refuse files that large long before.
+    /// If `index` does not fit in 32 bits; importers reject such files.
     #[must_use]
     pub fn new(index: usize) -> Self {
         let index = u32::try_from(index).expect("a scene holds fewer than 2^32 of anything");
         Self { index, of: PhantomData }
     }
 
-    /// The position in the scene's array.
+    /// Returns the position in the scene's array.
     #[must_use]
     pub fn index(self) -> usize {
         self.index as usize
     }
 }
 
-// Written out because a derive would ask `T` for each trait.
+// Implemented by hand, since a derive would require each trait of `T`.
 impl<T> Clone for Id<T> {
     fn clone(&self) -> Self {
         *self

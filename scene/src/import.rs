@@ -1,9 +1,8 @@
 //! Import of glTF 2.0, text and binary.
 //!
-//! The `gltf-json` crate supplies the schema. The accessors, validation and image loading of the `gltf` crate over it are
-//! not used: they unwrap indices that a file may get wrong (its validation indexes out of range for a bad POSITION), and a
-//! file must never make this program panic. Here every index is looked up with a check, and a failed check names the file,
-//! the place and the reason.
+//! The schema is that of the `gltf-json` crate. The accessors, validation and image loading of the `gltf` crate are not
+//! used, since they panic on some invalid indices. No file may make this program panic: every index is checked here,
+//! and a failed check names the file, the place and the reason.
 //!
 //! ```text
 //! bytes ─ container ─> JSON + BIN ─ uri, buffer ─> Source
@@ -76,26 +75,27 @@ use super::scene::Scene;
 pub use extension::{EXTENSIONS, Extension, Support, extensions_table};
 pub use limits::{MAX_COORDINATE_M, MAX_IMAGE_SIDE_TEXELS, MAX_INSTANCES};
 
-/// [`load_with`] the default options.
+/// Loads a glTF or GLB file with the default options.
 ///
 /// # Errors
 ///
-/// As there.
+/// Returns the errors of [`load_with`].
 pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
     load_with(path, &LoadOptions::default(), progress)
 }
 
-/// Loads a glTF or GLB file; which of the two is told from the content.
+/// Loads a glTF or GLB file; the format is detected from the content.
 ///
-/// Draws the default scene, or the first, or every root node. Textures of materials that nothing
-/// uses are not decoded, and images with the same source are decoded once. What the scene takes stays taken of
-/// `options.memory`; [`Memory::free`](crate::memory::Memory::free) gives it back.
+/// Loads the default scene, otherwise the first scene, otherwise all root nodes. Textures of unused materials are not
+/// decoded, and images with the same source are decoded once. The memory of the scene stays charged to
+/// `options.memory`; [`Memory::free`](crate::memory::Memory::free) releases it.
 ///
 /// # Errors
 ///
-/// One line that names the file and the reason: unreadable or truncated files, broken references,
-/// required extensions that are not supported, non-finite or zero-length vectors, images that do not
-/// decode, sizes over the limits of this module, paths that lead out of the file's folder, too little memory.
+/// Returns a one-line error with the file and the reason. Files fail if they are unreadable or truncated, have broken
+/// references, or require unsupported extensions. Values that are not finite, vectors of zero length, and undecodable
+/// images fail too. Further reasons are sizes over the limits of this module, paths outside of the file's folder, and
+/// an exceeded memory budget.
 pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
     let length = file_bytes(path)?;
     let over = |budget| SceneError::Memory { file: path.into(), at: "the file".into(), budget };
@@ -105,21 +105,20 @@ pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'
     loaded
 }
 
-/// Loads a glTF or GLB file that is in memory. `path` names it in messages, and the files it refers
-/// to are looked up beside it.
+/// Loads a glTF or GLB file from bytes. `path` is its name in messages; files that it refers to are relative to it.
 ///
 /// # Errors
 ///
-/// As [`load`].
+/// Returns the errors of [`load_with`].
 pub fn load_bytes(path: &Path, bytes: &[u8], progress: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
     load_bytes_with(path, bytes, &LoadOptions::default(), progress)
 }
 
-/// [`load_bytes`] with options.
+/// Loads a glTF or GLB file from bytes with options.
 ///
 /// # Errors
 ///
-/// As [`load_with`].
+/// Returns the errors of [`load_with`].
 pub fn load_bytes_with(
     path: &Path,
     bytes: &[u8],
@@ -177,8 +176,8 @@ pub fn load_bytes_with(
     Ok(scene)
 }
 
-/// Turns each (node, primitive) into an instance, or into as many as EXT_mesh_gpu_instancing lists. Equal geometry is
-/// built once.
+/// Converts each (node, primitive) to an instance, or to one for each transform of EXT_mesh_gpu_instancing. Equal
+/// geometry is built once.
 fn import_meshes(
     source: &Source<'_>,
     nodes: &[FlatNode],

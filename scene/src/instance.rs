@@ -1,4 +1,4 @@
-//! A mesh placed in the world with a material.
+//! Instances: meshes placed in the world with a material.
 
 use glam::{DMat3, DMat4, DVec3, Mat4};
 
@@ -7,26 +7,26 @@ use super::draw_options::DrawOptions;
 use super::material::MaterialId;
 use super::mesh::MeshId;
 
-/// One drawn mesh.
+/// A mesh with a material and a world transform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
-    /// The node's name, for messages; may be empty.
+    /// Name of the node, for messages; may be empty.
     pub name: String,
-    /// The mesh that is drawn.
+    /// Mesh of the instance.
     pub mesh: MeshId,
-    /// Its material.
+    /// Material of the instance.
     pub material: MaterialId,
-    /// Placement: affine, column-major, in meters. In f64 along the whole hierarchy and here: at
-    /// 10⁶ m an f32 translation jitters by 8 pixels (`relative_from_model` subtracts first).
+    /// World transform: affine, column-major, in meters. It is in f64 since at 10⁶ m an f32 translation jitters by 8
+    /// pixels; see [`relative_from_model`](Self::relative_from_model).
     pub world_from_model: DMat4,
-    /// The mesh's bounds in the world, conservative.
+    /// Bounds of the mesh in world space, conservative.
     pub bounds: Aabb,
     /// Layers, light channels, priority and shadows.
     pub draw: DrawOptions,
 }
 
 impl Instance {
-    /// Places `mesh`, whose own bounds are `model_bounds`, with the default [`DrawOptions`].
+    /// Creates an instance of `mesh`, whose own bounds are `model_bounds`, with the default [`DrawOptions`].
     #[must_use]
     pub fn new(name: &str, mesh: MeshId, material: MaterialId, world_from_model: DMat4, model_bounds: &Aabb) -> Self {
         Self {
@@ -39,8 +39,8 @@ impl Instance {
         }
     }
 
-    /// The transform to world axes with `origin` (normally the eye, in meters) as the zero point:
-    /// the subtraction is done in f64, the result is f32.
+    /// Returns the f32 transform to world axes relative to `origin` (normally the eye, in meters). The origin is
+    /// subtracted in f64 before rounding.
     #[must_use]
     pub fn relative_from_model(&self, origin: DVec3) -> Mat4 {
         let mut relative = self.world_from_model;
@@ -48,7 +48,7 @@ impl Instance {
         relative.as_mat4()
     }
 
-    /// Whether the transform turns the mesh inside out, so that front faces wind clockwise.
+    /// Returns true if the transform mirrors the mesh, so that front faces wind clockwise.
     #[must_use]
     pub fn is_mirrored(&self) -> bool {
         let linear = DMat3::from_mat4(self.world_from_model);
@@ -71,7 +71,7 @@ mod tests {
         assert!(!placed(DMat4::from_scale(DVec3::new(-1.0, -1.0, 1.0))).is_mirrored());
     }
 
-    /// At 10⁶ m the subtraction must happen before rounding: a millimeter survives.
+    /// At 10⁶ m, subtraction before rounding preserves millimeters.
     #[test]
     fn relative_transform_subtracts_in_f64() {
         let at = DVec3::new(1e6, 0.0, -1e6);

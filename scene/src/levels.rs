@@ -1,4 +1,4 @@
-//! Levels of detail of a scene: making them, and choosing one for each instance that is drawn.
+//! Levels of detail of a scene: generation, and selection for each drawn instance.
 
 use crate::error::SceneError;
 use crate::geometry::{ReadStreams, levels_of_detail};
@@ -10,11 +10,12 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 impl Scene {
-    /// Makes [levels](crate::mesh::Mesh::levels) of every mesh that is drawn and has none, on all cores, which for hundreds of
-    /// thousands of triangles takes seconds. Meshes of [bodies](crate::motion::Body) are drawn whole. To be called before the scene is uploaded and prepared.
+    /// Generates [levels](crate::mesh::Mesh::levels) for every drawn mesh without levels, on all cores; this takes
+    /// seconds for hundreds of thousands of triangles. Deformable meshes ([bodies](crate::motion::Body)) get none. Call
+    /// this before uploading and preparing the scene.
     ///
     /// # Errors
-    /// When `progress` asks to stop.
+    /// Fails if `progress` requests to stop.
     pub fn make_levels(&mut self, progress: &mut ProgressFn<'_>) -> Result<(), SceneError> {
         let mut read = vec![None; self.meshes.len()];
         for instance in &self.instances {
@@ -47,7 +48,7 @@ impl Scene {
                 let number = wanted[at].0;
                 made.push((number, levels));
                 let (done, total, item) = (made.len(), wanted.len(), meshes[number].name.as_str());
-                // What was at work when it was stopped ends after that.
+                // Meshes in progress are finished after a stop.
                 if told.is_ok() {
                     told = report(progress, &file, Progress { stage: Stage::Levels, done, total, item });
                 }
@@ -60,36 +61,36 @@ impl Scene {
     }
 }
 
-/// The level of an instance in an array by the numbers of instances, which is empty where all are drawn whole.
+/// Returns the level of an instance; 0 if `levels` is empty, which means that all instances use full meshes.
 #[must_use]
 pub fn level_of(levels: &[u8], instance: u32) -> u8 {
     levels.get(instance as usize).copied().unwrap_or(0)
 }
 
-/// What choosing levels for the instances of a scene takes.
+/// Level errors and scales of the instances of a scene, for level selection.
 #[derive(Clone, Debug, Default)]
 pub struct InstanceLevels {
-    /// How far each level of each mesh is from it, in meters of its own space; all empty where no mesh has levels.
+    /// Error of each level of each mesh, in meters of model space; empty if no mesh has levels.
     errors_m: Vec<Vec<f32>>,
-    /// Of each instance the mesh, and how many times as large it is at most.
+    /// Mesh and maximum scale of each instance.
     of: Vec<(u32, f64)>,
 }
 
 impl InstanceLevels {
-    /// Those of `scene`.
+    /// Collects the levels of `scene`.
     pub(crate) fn new(scene: &Scene) -> Self {
         if scene.meshes.iter().all(|mesh| mesh.levels.is_empty()) {
             return Self::default();
         }
         let errors = |mesh: &crate::Mesh| mesh.levels.iter().map(|level| level.error_m).collect();
         let mut own = Self { errors_m: scene.meshes.iter().map(errors).collect(), of: Vec::new() };
-        // What levels were of is elsewhere once a body moves.
+        // A deformed body invalidates the errors of its levels.
         scene.motion.bodies.iter().for_each(|body| own.errors_m[body.mesh.index()].clear());
         own.of = scene.instances.iter().map(Self::one).collect();
         own
     }
 
-    /// Takes over where an instance stands.
+    /// Updates the scale of an instance that moved.
     pub(crate) fn update(&mut self, scene: &Scene, number: usize) {
         if let Some(own) = self.of.get_mut(number) {
             *own = Self::one(&scene.instances[number]);
@@ -99,26 +100,25 @@ impl InstanceLevels {
     fn one(instance: &crate::Instance) -> (u32, f64) {
         let linear = DMat3::from_mat4(instance.world_from_model);
         let axes = [linear.x_axis, linear.y_axis, linear.z_axis];
-        // The largest eigenvalue of MᵀM is no larger (Gershgorin), and of axes upright on each other it is the longest one's.
+        // Upper bound of the largest eigenvalue of MᵀM (Gershgorin), exact for orthogonal axes.
         let rows = axes.map(|axis| axes.iter().map(|other| axis.dot(*other).abs()).sum::<f64>());
         (instance.mesh.index() as u32, rows.into_iter().fold(0.0, f64::max).sqrt())
     }
 
-    /// Whether no mesh has levels.
+    /// Returns true if no mesh has levels.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.of.is_empty()
     }
 
-    /// By the numbers of instances the coarsest level that each may be drawn with, before anything [limits](Self::limit) it; empty where
-    /// all are drawn whole.
+    /// Returns the coarsest level of each instance, to be [limited](Self::limit); empty if no mesh has levels.
     #[must_use]
     pub fn unlimited(&self) -> Vec<u8> {
         vec![u8::MAX; self.of.len()]
     }
 
-    /// Limits the levels of those of `list` to what is no farther from the mesh than `most_m` says of the instance, in meters of the
-    /// world. 0 is the mesh itself.
+    /// Limits the levels of the instances in `list` to those with an error of at most `most_m` of the instance, in
+    /// meters of world space. Level 0 is the mesh itself.
     pub fn limit<'a>(&self, levels: &mut [u8], list: impl IntoIterator<Item = &'a u32>, most_m: impl Fn(u32) -> f64) {
         for number in list {
             let (Some(&(mesh, scale)), Some(level)) = (self.of.get(*number as usize), levels.get_mut(*number as usize))
@@ -184,7 +184,7 @@ mod tests {
         assert!(scene.meshes[0].levels.is_empty());
     }
 
-    /// The coarsest level within the distance, of which larger instances have less.
+    /// The coarsest level within the error; larger instances have finer levels.
     #[test]
     fn levels_are_limited_by_the_size_of_instances() {
         let mut scene = scene();
@@ -197,7 +197,7 @@ mod tests {
             own.limit(&mut levels, &[0, 1, 2, 3, 4], |_| most_m);
             levels
         };
-        // A shear by 3 makes nothing longer by more than 3.31.
+        // A shear by 3 stretches lengths by at most 3.31.
         for (number, scale) in [(0, 1.0), (1, 4.0), (2, 1.0), (3, 3.31)] {
             for (level, error) in errors.iter().enumerate() {
                 assert!(usize::from(limited(error * scale * 1.0001)[number]) > level || number == 3);

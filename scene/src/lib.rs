@@ -1,23 +1,80 @@
-//! The scene as plain data: meshes, materials, textures, instances, lights, cameras, environment.
+//! Renderer-independent 3D scenes: glTF import, materials, lights, cameras, environments and built-in test scenes.
+//!
+//! This crate turns files into plain arrays that a renderer uploads. It has no GPU types and no drawing code.
 //!
 //! ```text
 //! glTF, GLB ──> import ──┐
 //! built-in name ─────────┼──> Scene (plain arrays, ids are positions)
-//! .hdr, .exr, .ktx, sky ─┘         └──> bounds, draw lists, frustum, orbit: pure functions
+//! .hdr, .exr, .ktx, sky ─┘         └──> bounds, culling, draw lists, levels of detail: pure functions
 //! ```
 //!
-//! Nothing here knows a GPU. Meters, right-handed, y up, linear Rec.709, lux, candela and nits throughout. What a file
-//! says is checked once, at import; a `Scene` that was returned holds finite numbers and valid ids only.
+//! # When to use it
 //!
-//! Features, all on by default:
+//! Use it to load glTF scenes and HDR environments for a renderer of your own, or for
+//! [`framegraph-passes`](https://crates.io/crates/framegraph-passes), which uploads and draws them. Untrusted files
+//! are safe to load: an invalid file returns a one-line error with the file, the place and the reason. Memory use has
+//! a limit ([`LoadOptions::memory`]), and files outside of the scene's folder are not read by default.
 //!
-//! - `gltf`: import of scenes.
-//! - `draco` and `meshopt`: compressed geometry in scenes.
-//! - `png`, `jpeg` and `webp`: textures, and pictures in general.
-//! - `basisu`: textures in KTX2 files, with texels of Basis Universal (ETC1S, UASTC) or of eight bits a channel.
-//! - `exr`: environments from OpenEXR, and writing such files.
+//! Do not use it as a general glTF library: it keeps only what rendering needs, cannot write files, and discards
+//! `extras` except its own member. It has no scene editing, physics or streaming. For lossless access to documents, use
+//! the crate `gltf`.
 //!
-//! Without any of them the plain data, the built-in scenes, cameras, the sky and Radiance `.hdr` environments remain.
+//! # Example
+//!
+//! Opening a built-in scene and listing the visible instances, front to back:
+//!
+//! ```
+//! use framegraph_scene::{DrawLists, Scene, SceneError, progress::silent};
+//!
+//! fn main() -> Result<(), SceneError> {
+//!     let scene = Scene::open("spheres", &mut silent)?; // or a path to a .gltf or .glb file
+//!     let camera = scene.default_camera(16.0 / 9.0);
+//!     let lists = DrawLists::for_camera(&scene, &camera, 16.0 / 9.0);
+//!     println!("{} triangles, {} opaque instances in view", scene.triangle_count(), lists.opaque.len());
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # Conventions
+//!
+//! Lengths are in meters, light is in lux, candela and nits, and colors are linear Rec.709. Axes are right-handed with
+//! y up; cameras look along −z. Transforms are `f64`, so that scenes far from the origin do not jitter. Loaders
+//! validate their input: a loaded [`Scene`] has finite numbers and valid ids, and [`Scene::check`] verifies this for
+//! scenes built in code.
+//!
+//! # Features
+//!
+//! All features except `serde` are on by default.
+//!
+//! | Feature | Adds |
+//! | --- | --- |
+//! | `gltf` | Import of glTF 2.0 and GLB |
+//! | `draco` | `KHR_draco_mesh_compression` in glTF |
+//! | `meshopt` | `EXT_meshopt_compression` and `KHR_meshopt_compression` in glTF |
+//! | `png` | PNG textures; reading and writing PNG images |
+//! | `jpeg` | JPEG textures and images |
+//! | `webp` | WebP textures and images |
+//! | `basisu` | KTX2 textures: Basis Universal (ETC1S, UASTC) or eight bits a channel |
+//! | `exr` | OpenEXR environments; writing OpenEXR images |
+//! | `serde` | Serialization of settings |
+//!
+//! Without any feature the data types, built-in scenes, cameras, the procedural sky, and Radiance `.hdr` and
+//! floating-point KTX environments remain.
+//!
+//! # Modules
+//!
+//! | Modules | Content |
+//! | --- | --- |
+//! | `import` | glTF import and its table of supported extensions; feature `gltf` |
+//! | [`mod@builtin`] | Scenes generated in code |
+//! | [`mesh`], [`material`], [`texture`], [`instance`], [`light`], [`camera`], [`id`] | Parts of a [`Scene`] |
+//! | [`motion`] | Node hierarchy, animations, skins and morph targets |
+//! | [`environment`] | Environment maps, spherical harmonics, procedural sky, sun extraction |
+//! | [`geometry`], [`levels`], [`mips`] | Shapes, levels of detail, triangle order, mip levels |
+//! | [`bounds`], [`boxes`], [`frustum`] | Bounding boxes and frustum culling |
+//! | [`renderables`], [`draw_list`], [`draw_options`], [`batch`] | Sorted draw lists and batches |
+//! | [`color`], [`color_table`], [`picture`] | Color conversions, `.cube` tables, image files |
+//! | [`memory`], [`progress`], [`parallel`], [`error`] | Memory budget, progress reports, threads, errors |
 
 pub mod batch;
 pub mod bounds;
@@ -95,7 +152,7 @@ pub use texture::{
     UvTransform,
 };
 
-/// The example of the README, compiled and run.
+/// Compiles and runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! Metal-rough materials, as glTF 2.0 states them.
+//! Metallic-roughness materials, as in glTF 2.0.
 
 mod lobes;
 mod stencil;
@@ -14,39 +14,39 @@ pub use lobes::{
 };
 pub use stencil::{Stencil, StencilCompare, StencilFace, StencilOp};
 
-/// A material of a scene.
+/// Id of a material of a scene.
 pub type MaterialId = Id<Material>;
 
-/// What alpha means for a material (glTF 2.0, section 3.9.4).
+/// Alpha mode of a material (glTF 2.0, section 3.9.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AlphaMode {
     /// Alpha is ignored.
     #[default]
     Opaque,
-    /// Below `cutoff` nothing is drawn, otherwise the surface is opaque.
+    /// Alpha test: nothing is drawn below `cutoff`; otherwise the surface is opaque.
     Mask {
-        /// The least alpha that is drawn; above 1 nothing is.
+        /// Minimum alpha that is drawn; above 1 nothing is.
         cutoff: f32,
     },
-    /// The surface covers what is behind it by alpha (Porter–Duff over, straight alpha).
+    /// Alpha blending over the background (Porter–Duff over, straight alpha).
     Blend,
 }
 
-/// How triangles of one blended object are put in order (Filament's `TransparencyMode`).
+/// Order of the triangles of a blended object (Filament's `TransparencyMode`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TransparencyMode {
-    /// In the order of the mesh (`DEFAULT`).
+    /// Order of the mesh (`DEFAULT`).
     #[default]
     Default,
-    /// The nearest surfaces alone: depth is drawn first, then what has that depth (`TWO_PASSES_ONE_SIDE`). Objects drawn
-    /// later are hidden behind it.
+    /// Only the nearest surfaces: depth is drawn first, then the surfaces at that depth (`TWO_PASSES_ONE_SIDE`). They
+    /// hide objects that are drawn later and lie behind.
     TwoPassesOneSide,
-    /// Back faces first, then front faces, whatever [`Material::double_sided`] says (`TWO_PASSES_TWO_SIDES`).
+    /// Back faces first, then front faces, independent of [`Material::double_sided`] (`TWO_PASSES_TWO_SIDES`).
     TwoPassesTwoSides,
 }
 
 impl TransparencyMode {
-    /// Modes by their names in files.
+    /// All modes with their names in files.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("default", Self::Default),
         ("two-passes-one-side", Self::TwoPassesOneSide),
@@ -54,95 +54,96 @@ impl TransparencyMode {
     ];
 }
 
-/// What the numbers of an emission mean.
+/// Unit of an emission.
 ///
-/// glTF calls both nits "where a physical light unit is needed" (section 3.9.3), but a factor of at
-/// most 1 nit would be black under any daylight exposure, and is not what files mean by it.
+/// glTF defines the unit as nits "where a physical light unit is needed" (section 3.9.3). A factor of at most 1 nit
+/// would be black under any daylight exposure, which is not what files intend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EmissiveUnit {
-    /// Brightness on the display: not exposed. Files without KHR_materials_emissive_strength.
+    /// Brightness on the display, independent of exposure. Used for files without KHR_materials_emissive_strength.
     #[default]
     Display,
-    /// Luminance in nits: exposed like reflected light.
+    /// Luminance in nits, exposed like reflected light.
     Nits,
 }
 
-/// A metal-rough surface. Factors multiply what their texture says; a missing texture reads as 1.
+/// Metallic-roughness material. Factors multiply the values of their textures; a missing texture counts as 1.
 ///
-/// Colors are linear Rec.709. A metal's base color is its reflectance at normal incidence, a
-/// dielectric's is its diffuse albedo.
+/// Colors are linear Rec.709. The base color of a metal is its reflectance at normal incidence, that of a dielectric
+/// its diffuse albedo.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name, for messages; may be empty.
     pub name: String,
     /// Base color in 0…1 and alpha (glTF `baseColorFactor`).
     pub base_color: Vec4,
-    /// Share of the surface that is metal: 0 a dielectric, 1 a metal (glTF `metallicFactor`).
+    /// Metalness: 0 for a dielectric, 1 for a metal (glTF `metallicFactor`).
     pub metallic: f32,
-    /// Perceptual roughness 0…1; the GGX parameter is its square.
+    /// Perceptual roughness 0…1; the GGX parameter α is its square.
     pub roughness: f32,
-    /// Emission per channel: `emissiveFactor` times KHR_materials_emissive_strength, 0 or more.
+    /// Emission per channel, 0 or more: `emissiveFactor` times KHR_materials_emissive_strength.
     pub emissive: Vec3,
-    /// The unit of `emissive`.
+    /// Unit of `emissive`.
     pub emissive_unit: EmissiveUnit,
-    /// Index of refraction of the dielectric part (KHR_materials_ior): 1 or more; 0 stands for
-    /// infinity, a reflectance of 1.
+    /// Index of refraction of the dielectric part (KHR_materials_ior), 1 or more. 0 stands for infinity, a reflectance
+    /// of 1.
     pub ior: f32,
-    /// Dispersion of the volume (KHR_materials_dispersion): 20 over the Abbe number, 0 or more; `None` where all colors
-    /// refract alike. Without a volume that transmits it has no effect.
+    /// Dispersion of the volume (KHR_materials_dispersion): 20 divided by the Abbe number, 0 or more. `None` refracts
+    /// all wavelengths alike. Has no effect without a transmitting volume.
     pub dispersion: Option<f32>,
-    /// Scales x and y of the tangent-space normal.
+    /// Scale of the x and y components of the tangent-space normal.
     pub normal_scale: f32,
-    /// Strength of the occlusion texture, 0 (no effect)…1.
+    /// Strength of the occlusion texture, from 0 (no effect) to 1.
     pub occlusion_strength: f32,
-    /// Whether alpha is ignored, tested or blended.
+    /// Alpha mode: opaque, alpha-tested or blended.
     pub alpha: AlphaMode,
-    /// How triangles of an object are put in order, where it blends and blended surfaces are sorted.
+    /// Order of the triangles of an object, if it is blended and blended surfaces are sorted.
     pub transparency: TransparencyMode,
-    /// Draw back faces too, with their normals turned towards the viewer.
+    /// True if back faces are drawn too, with flipped normals.
     pub double_sided: bool,
-    /// The base color is shown without shading (KHR_materials_unlit). Lines and points add the emission (glTF 2.0, section 3.9.7).
+    /// True if the base color is shown without shading (KHR_materials_unlit). Lines and points add the emission (glTF
+    /// 2.0, section 3.9.7).
     pub unlit: bool,
     /// Texture of base color (RGB) and alpha (A); role `Color`.
     pub base_color_texture: Option<TextureSlot>,
     /// Texture of roughness (G) and metallic (B); role `Linear`.
     pub metallic_roughness_texture: Option<TextureSlot>,
-    /// Texture of the tangent-space normal; role `Normal`.
+    /// Texture of tangent-space normals; role `Normal`.
     pub normal_texture: Option<TextureSlot>,
-    /// Texture of the occlusion of indirect light (R); role `Linear`.
+    /// Texture of ambient occlusion for indirect light (R); role `Linear`.
     pub occlusion_texture: Option<TextureSlot>,
     /// Texture of the emission (RGB); role `Color`.
     pub emissive_texture: Option<TextureSlot>,
-    /// A clear layer over the surface with a specular reflection of its own.
+    /// Clear coat: a second specular layer over the surface.
     pub clear_coat: Option<ClearCoat>,
-    /// Light scattered back by fibers that stand up from the surface, as cloth does.
+    /// Sheen: light scattered back by fibers, as in cloth.
     pub sheen: Option<Sheen>,
-    /// Highlights stretched along a direction of the surface, as on brushed metal.
+    /// Anisotropy: highlights stretched along a direction, as on brushed metal.
     pub anisotropy: Option<Anisotropy>,
-    /// Light that passes through the surface, as through glass.
+    /// Transmission: light that passes through the surface, as through glass.
     pub transmission: Option<Transmission>,
-    /// Strength and tint of the dielectric part's specular reflection.
+    /// Strength and tint of the dielectric specular reflection.
     pub specular: Option<Specular>,
-    /// A thin film over the base, in which light interferes.
+    /// Iridescence: interference in a thin film over the base.
     pub iridescence: Option<Iridescence>,
-    /// Light that is scattered through the surface, as through a leaf.
+    /// Diffuse transmission: light scattered through the surface, as in leaves.
     pub diffuse_transmission: Option<DiffuseTransmission>,
-    /// Light that is scattered below the surface, Filament's shading model `subsurface`.
+    /// Subsurface scattering, as in Filament's shading model `subsurface`.
     pub subsurface: Option<Subsurface>,
-    /// Color of light that is scattered in cloth, linear Rec.709, 0…1: the diffuse light is wrapped about the terminator and
-    /// tinted there. Filament: `subsurfaceColor` of the shading model `cloth`, whose specular lobe is the sheen.
+    /// Color of light scattered within cloth, linear Rec.709, 0…1; diffuse light wraps around the terminator with this
+    /// tint. Filament: `subsurfaceColor` of the shading model `cloth`, whose specular lobe is the sheen.
     pub cloth_subsurface: Option<Vec3>,
-    /// Makes the surface a shadow catcher: it is seen where the sun is in shadow alone, by this strength from 0 to 1, times its
-    /// alpha. It takes effect where the surface is unlit and blended. Filament: `shadowMultiplier` and `shadowStrength`.
+    /// Makes the surface a shadow catcher: it shows only shadows of the sun. The value is their strength from 0 to 1,
+    /// multiplied by alpha. Requires an unlit, blended surface. Filament: `shadowMultiplier` and `shadowStrength`.
     pub shadow_catcher: Option<f32>,
-    /// Stencil test and operations; a scene in which no material has any is drawn without a stencil buffer.
+    /// Stencil test and operations. A scene without any is drawn without a stencil buffer.
     pub stencil: Option<Box<Stencil>>,
 }
 
-/// How many textures a material can have.
+/// Number of texture slots of a material.
 pub const SLOT_COUNT: usize = 19;
 
-/// The role of each texture slot, in the order of [`Material::slots`].
+/// Role of each texture slot, in the order of [`Material::slots`].
 pub const SLOT_ROLES: [TextureRole; SLOT_COUNT] = {
     use TextureRole::{Color, Linear, Normal};
     [
@@ -158,7 +159,7 @@ pub const SLOT_ROLES: [TextureRole; SLOT_COUNT] = {
 };
 
 impl Default for Material {
-    /// glTF's default material: white, fully metallic and rough.
+    /// Returns glTF's default material: white, fully metallic and rough.
     fn default() -> Self {
         Self {
             name: String::new(),
@@ -196,19 +197,19 @@ impl Default for Material {
 }
 
 impl Material {
-    /// A dielectric of this diffuse albedo and perceptual roughness.
+    /// Returns a dielectric with a diffuse albedo and a perceptual roughness.
     #[must_use]
     pub fn dielectric(name: &str, albedo: Vec3, roughness: f32) -> Self {
         Self { name: name.into(), base_color: albedo.extend(1.0), metallic: 0.0, roughness, ..Self::default() }
     }
 
-    /// A metal of this reflectance at normal incidence and perceptual roughness.
+    /// Returns a metal with a reflectance at normal incidence and a perceptual roughness.
     #[must_use]
     pub fn metal(name: &str, f0: Vec3, roughness: f32) -> Self {
         Self { metallic: 1.0, ..Self::dielectric(name, f0, roughness) }
     }
 
-    /// Every texture slot: those of the base, then those of each lobe.
+    /// Returns every texture slot: first those of the base, then those of each lobe.
     #[must_use]
     pub fn slots(&self) -> [Option<TextureSlot>; SLOT_COUNT] {
         let Self { clear_coat, sheen, anisotropy, transmission, specular, iridescence, diffuse_transmission, .. } =
@@ -236,14 +237,14 @@ impl Material {
         ]
     }
 
-    /// The body behind the surface, if light passes into it.
+    /// Returns the volume behind the surface, if light passes into it.
     #[must_use]
     pub fn volume(&self) -> Option<Volume> {
         let scattered = self.diffuse_transmission.and_then(|d| d.volume);
         self.transmission.and_then(|t| t.volume).or(scattered)
     }
 
-    /// The lobes that shading has to evaluate; none where the base color is shown as it is.
+    /// Returns the lobes that shading must evaluate; none for an unlit material.
     #[must_use]
     pub fn lobes(&self) -> Lobes {
         let has = |lobe: &Lobe| match lobe {
@@ -261,14 +262,14 @@ impl Material {
         Lobe::ALL.into_iter().filter(|lobe| !self.unlit && has(lobe)).collect()
     }
 
-    /// Returns true for a shadow catcher that takes effect.
+    /// Returns true if the material is an effective shadow catcher.
     #[must_use]
     pub fn catches_shadows(&self) -> bool {
         self.shadow_catcher.is_some() && self.unlit && self.alpha == AlphaMode::Blend
     }
 
-    /// The texture coordinates that tangents must follow: those of the normal map, else of the coat's, else of the
-    /// anisotropy, whose direction counts from the tangent. `None` where nothing asks for tangents.
+    /// Returns the texture coordinate set for tangents: that of the normal map, otherwise of the clear coat's normal
+    /// map, otherwise of anisotropy. `None` if tangents are not needed.
     #[must_use]
     pub fn tangent_uv_set(&self) -> Option<u32> {
         let coat = self.clear_coat.and_then(|c| c.normal_texture);
@@ -276,7 +277,7 @@ impl Material {
         normal.or_else(|| self.anisotropy.map(|a| a.texture.map_or(0, |slot| slot.uv_set)))
     }
 
-    /// Reflectance of the dielectric part at normal incidence: ((n − 1) / (n + 1))², 0.04 for 1.5.
+    /// Returns the reflectance of the dielectric part at normal incidence: ((n − 1) / (n + 1))², 0.04 for 1.5.
     #[must_use]
     pub fn dielectric_f0(&self) -> f32 {
         if self.ior == 0.0 {

@@ -1,12 +1,12 @@
-//! How much memory loading may take: one budget for files, decoding, mip levels and upload.
+//! Memory budget of loading, shared by files, decoding, mip levels and upload.
 //!
-//! What stays is kept ([`Memory::keep`]), what a step of the work needs for a while is lent ([`Memory::lend`]). A loan waits
-//! for others to be returned; when it does not fit even then, it is refused.
+//! Memory of results is kept ([`Memory::keep`]); temporary memory is lent ([`Memory::lend`]). A loan waits until other
+//! loans are returned, and fails if the budget is still exceeded.
 
 use std::fs;
 use std::sync::{Condvar, Mutex, MutexGuard};
 
-/// A budget of memory in bytes, shared by all that load a scene.
+/// Memory budget in bytes, shared by all loading of a scene.
 ///
 /// ```
 /// use framegraph_scene::memory::Memory;
@@ -32,18 +32,18 @@ struct Taken {
     lent_bytes: u64,
 }
 
-/// Something does not fit into the budget.
+/// Error: an allocation exceeds the memory budget.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{} of memory are needed, and {} are left of the {} that loading may take",
+    "{} of memory are needed, but only {} are left of the {} budget",
     mebibytes(*needed_bytes), mebibytes(*left_bytes), mebibytes(*limit_bytes)
 )]
 pub struct OverBudget {
-    /// What is needed.
+    /// Requested bytes.
     pub needed_bytes: u64,
-    /// What is left.
+    /// Available bytes.
     pub left_bytes: u64,
-    /// The whole budget.
+    /// Bytes of the entire budget.
     pub limit_bytes: u64,
 }
 
@@ -57,7 +57,7 @@ fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
-/// Memory that is taken for a while; dropping it returns it.
+/// Temporarily charged memory; dropping it returns the bytes.
 #[derive(Debug)]
 pub struct Loan<'a> {
     memory: &'a Memory,
@@ -65,29 +65,29 @@ pub struct Loan<'a> {
 }
 
 impl Default for Memory {
-    /// Half of what the machine has, or the group of processes may use.
+    /// Returns half of the memory of the machine or its control group.
     fn default() -> Self {
         Self::new(machine_bytes() / 2)
     }
 }
 
 impl Memory {
-    /// A budget of so many bytes.
+    /// Creates a budget of `limit_bytes`.
     #[must_use]
     pub fn new(limit_bytes: u64) -> Self {
         Self { limit_bytes, taken: Mutex::default(), returned: Condvar::new() }
     }
 
-    /// A budget that nothing exceeds: for what was loaded already.
+    /// Creates an unlimited budget, for data that is already loaded.
     #[must_use]
     pub fn unlimited() -> Self {
         Self::new(u64::MAX)
     }
 
-    /// Takes bytes until they are freed.
+    /// Charges bytes until they are freed.
     ///
     /// # Errors
-    /// [`OverBudget`].
+    /// Fails with [`OverBudget`] if fewer bytes are available.
     pub fn keep(&self, bytes: u64) -> Result<(), OverBudget> {
         let mut taken = self.taken();
         self.fits(&taken, bytes)?;
@@ -95,17 +95,17 @@ impl Memory {
         Ok(())
     }
 
-    /// Gives back what was kept.
+    /// Releases bytes charged by [`keep`](Self::keep).
     pub fn free(&self, bytes: u64) {
         let mut taken = self.taken();
         taken.kept_bytes = taken.kept_bytes.saturating_sub(bytes);
         self.returned.notify_all();
     }
 
-    /// Takes bytes for a while. Waits while others have loans and there is not enough beside them.
+    /// Charges bytes temporarily. Waits while other loans occupy the needed memory.
     ///
     /// # Errors
-    /// [`OverBudget`], when there is not enough although nothing is lent.
+    /// Fails with [`OverBudget`] if fewer bytes are available without any loans.
     pub fn lend(&self, bytes: u64) -> Result<Loan<'_>, OverBudget> {
         let mut taken = self.taken();
         loop {
@@ -131,7 +131,7 @@ impl Memory {
 }
 
 impl Loan<'_> {
-    /// Keeps some of it, and returns the rest.
+    /// Keeps `bytes` of the loan, and returns the rest.
     pub fn keep(self, bytes: u64) {
         self.memory.taken().kept_bytes += bytes.min(self.bytes);
     }
@@ -144,10 +144,11 @@ impl Drop for Loan<'_> {
     }
 }
 
-/// What is assumed where the system does not say.
+/// Assumed memory if the system does not report it.
 const ASSUMED_BYTES: u64 = 8 << 30;
 
-/// Memory of the machine, or of the control group where that is less (Linux: `/proc/meminfo`, `memory.max`).
+/// Returns the memory of the machine, or of its control group if that is smaller (Linux: `/proc/meminfo`,
+/// `memory.max`).
 fn machine_bytes() -> u64 {
     let meminfo = fs::read_to_string("/proc/meminfo").ok();
     let total = meminfo.as_deref().and_then(total_of).unwrap_or(ASSUMED_BYTES);
@@ -156,7 +157,7 @@ fn machine_bytes() -> u64 {
     group.map_or(total, |group: u64| group.min(total))
 }
 
-/// `MemTotal` of `/proc/meminfo`, in bytes.
+/// Returns `MemTotal` of `/proc/meminfo`, in bytes.
 fn total_of(meminfo: &str) -> Option<u64> {
     let line = meminfo.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
@@ -193,7 +194,7 @@ mod tests {
                 let _second = memory.lend(6).expect("6 of 10, once the first is returned");
                 assert!(returned.load(Ordering::SeqCst), "both were out at once");
             });
-            // Long enough for the other thread to have asked; a test that is too quick passes as well.
+            // Usually long enough for the other thread to have requested memory; the test also passes if it is not.
             std::thread::sleep(std::time::Duration::from_millis(20));
             returned.store(true, Ordering::SeqCst);
             drop(first);

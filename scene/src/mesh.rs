@@ -1,4 +1,4 @@
-//! Meshes of triangles, lines or points, as separate vertex streams.
+//! Meshes of triangles, lines or points, stored as separate vertex streams.
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -7,23 +7,23 @@ use super::id::Id;
 use crate::moves::Moves;
 use crate::moves::gather;
 
-/// A mesh of a scene.
+/// Id of a mesh of a scene.
 pub type MeshId = Id<Mesh>;
 
-/// Primitives that the indices of a mesh name; strips, fans and loops become lists when they are imported.
+/// Primitive topology of a mesh; the importer converts strips, fans and loops to lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Topology {
-    /// Triangles, three indices each; front faces wind counter-clockwise.
+    /// Triangles with three indices each; front faces are counter-clockwise.
     #[default]
     Triangles,
-    /// Lines of a pixel's width, two indices each.
+    /// Lines one pixel wide, with two indices each.
     Lines,
-    /// Points of a pixel's size, an index each.
+    /// Points one pixel in size, with one index each.
     Points,
 }
 
 impl Topology {
-    /// Number of indices of a primitive.
+    /// Returns the number of indices of a primitive.
     #[must_use]
     pub const fn corners(self) -> usize {
         match self {
@@ -33,7 +33,7 @@ impl Topology {
         }
     }
 
-    /// Name of the primitives, in the plural.
+    /// Returns the name of the primitives, in the plural.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -44,97 +44,96 @@ impl Topology {
     }
 }
 
-/// An indexed mesh.
+/// Indexed mesh.
 ///
-/// Lines and points have no area: they cast no shadow, hide nothing from feature culling, and have no levels of detail.
+/// Lines and points have no area: they cast no shadows, do not count as occluders, and have no levels of detail.
 ///
-/// Streams are arrays of equal length, one element a vertex; optional streams are empty when the
-/// mesh has none. Separate streams keep depth-only passes from fetching what they do not need, and
-/// the vertex layout of the GPU stays the uploader's business.
+/// Streams have one element per vertex; optional streams may be empty. With separate streams, depth-only passes fetch
+/// only what they need, and the uploader chooses the GPU vertex layout.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Name, for messages; may be empty.
     pub name: String,
     /// Position of each vertex, in meters; finite.
     pub positions: Vec<Vec3>,
-    /// Normal of each vertex; unit length. May be empty for lines and points, whose material is then to be unlit.
+    /// Unit normal of each vertex. May be empty for lines and points with an unlit material.
     pub normals: Vec<Vec3>,
-    /// Tangent of each vertex: xyz of unit length and perpendicular to the normal, w = ±1; the bitangent is
-    /// w · normal × tangent. May be empty.
+    /// Tangent of each vertex: xyz has unit length and is perpendicular to the normal, w is ±1. The bitangent is w ·
+    /// normal × tangent. May be empty.
     pub tangents: Vec<Vec4>,
-    /// First texture coordinates, v down. May be empty.
+    /// First set of texture coordinates, v down. May be empty.
     pub uv0: Vec<Vec2>,
-    /// Second texture coordinates, v down. May be empty.
+    /// Second set of texture coordinates, v down. May be empty.
     pub uv1: Vec<Vec2>,
-    /// Color of each vertex, linear Rec.709 and alpha, by which the base color is multiplied; may exceed 1. May be empty.
+    /// Vertex colors, linear Rec.709 with alpha, multiplied with the base color; may exceed 1. May be empty.
     pub colors: Vec<Vec4>,
-    /// Primitives that the indices make up.
+    /// Topology of the primitives.
     pub topology: Topology,
-    /// Vertex numbers of each primitive, each below the number of vertices.
+    /// Vertex indices of each primitive, all valid.
     pub indices: Vec<u32>,
-    /// The same surface in fewer and fewer triangles ([`Scene::make_levels`](crate::Scene::make_levels)); none of a mesh that is always
-    /// drawn whole. Who changes anything else of the mesh clears them.
+    /// Levels of detail with successively fewer triangles ([`Scene::make_levels`](crate::Scene::make_levels)); empty
+    /// for a mesh that is always drawn at full detail. Clear them when changing other fields of the mesh.
     pub levels: Vec<MeshLevel>,
-    /// The smallest box around all positions.
+    /// Bounding box of all positions.
     pub bounds: Aabb,
-    /// What moves the vertices, until a [`Body`](crate::motion::Body) is made of it.
+    /// Skin influences and morph targets, until they are moved to a [`Body`](crate::motion::Body).
     pub moves: Option<Box<Moves>>,
 }
 
-/// A level of detail of a [`Mesh`]: other triangles over the same vertices.
+/// Level of detail of a [`Mesh`]: other triangles over the same vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshLevel {
-    /// Three vertex numbers a triangle, each below the number of vertices of the mesh.
+    /// Three valid vertex indices of the mesh per triangle.
     pub indices: Vec<u32>,
-    /// How far, in meters of the mesh's own space, what is drawn may be from where the mesh has it: surfaces, textures and highlights on
-    /// them, and colors. From level to level no less.
+    /// Maximum displacement of surfaces, textures, highlights and colors from the full mesh, in meters of model space.
+    /// Non-decreasing from level to level.
     pub error_m: f32,
 }
 
 impl Mesh {
-    /// The number of vertices.
+    /// Returns the number of vertices.
     #[must_use]
     pub fn vertex_count(&self) -> usize {
         self.positions.len()
     }
 
-    /// True for triangles; lines and points have no area.
+    /// Returns true for triangles; lines and points have no area.
     #[must_use]
     pub fn has_area(&self) -> bool {
         self.topology == Topology::Triangles
     }
 
-    /// The number of primitives, whatever their topology is.
+    /// Returns the number of primitives of any topology.
     #[must_use]
     pub fn primitive_count(&self) -> usize {
         self.indices.len() / self.topology.corners()
     }
 
-    /// The number of triangles; 0 for lines and points.
+    /// Returns the number of triangles; 0 for lines and points.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         if self.has_area() { self.primitive_count() } else { 0 }
     }
 
-    /// The triangles as triples of vertex numbers; none of lines and points.
+    /// Returns the triangles as triples of vertex indices; none for lines and points.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         let indices = if self.has_area() { self.indices.as_slice() } else { &[] };
         indices.chunks_exact(3).map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
     }
 
-    /// The indices of the mesh, then those of its levels.
+    /// Returns the indices of the mesh, then those of its levels.
     pub fn all_indices(&self) -> impl Iterator<Item = &[u32]> {
         std::iter::once(self.indices.as_slice()).chain(self.levels.iter().map(|level| level.indices.as_slice()))
     }
 
-    /// The indices of a level, 0 for the mesh itself; of the coarsest where there are fewer.
+    /// Returns the indices of a level, 0 for the mesh itself; clamped to the coarsest level.
     #[must_use]
     pub fn indices_in(&self, level: u8) -> &[u32] {
         let last = self.levels.len().min(usize::from(level));
         last.checked_sub(1).map_or(&self.indices, |level| &self.levels[level].indices)
     }
 
-    /// The texture coordinates of a set: 0 or 1; empty when the mesh has none.
+    /// Returns the texture coordinates of set 0 or 1; empty if the mesh lacks them.
     #[must_use]
     pub fn uv(&self, set: u32) -> &[Vec2] {
         match set {
@@ -144,12 +143,12 @@ impl Mesh {
         }
     }
 
-    /// Replaces the vertices by copies of `source[i]`, in that order: how vertices are split or
-    /// reordered. Indices are left alone; levels go, whose indices would be of other vertices.
+    /// Replaces the vertices by copies of `source[i]`, in that order, to split or reorder vertices. Indices are
+    /// unchanged; levels are removed, since their indices become invalid.
     ///
     /// # Panics
     ///
-    /// When a source is not a vertex of this mesh.
+    /// If a source is not a vertex of this mesh.
     pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
         self.levels.clear();
         gather(&mut self.positions, source);
@@ -163,11 +162,11 @@ impl Mesh {
         }
     }
 
-    /// Checks every promise this type makes.
+    /// Checks every guarantee of this type.
     ///
     /// # Errors
     ///
-    /// The first promise that is broken. Importers report it with the file; for generated meshes it is a test.
+    /// Returns the first violated guarantee. Importers report it with the file.
     pub fn check(&self) -> Result<(), MeshError> {
         let vertices = self.positions.len();
         for (stream, length, optional) in [
@@ -208,7 +207,7 @@ impl Mesh {
     }
 }
 
-/// The first element that fails `good`.
+/// Returns the first element that fails `good`.
 fn first_bad<const N: usize, T: Copy + Into<[f32; N]>>(
     element: &'static str,
     stream: &[T],
@@ -220,58 +219,58 @@ fn first_bad<const N: usize, T: Copy + Into<[f32; N]>>(
     }
 }
 
-/// What is wrong with a mesh.
+/// Error in a mesh.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// A stream has not one element a vertex.
+    /// A stream does not have one element per vertex.
     #[error("{length} {stream} for {vertices} vertices")]
     Length {
-        /// The stream: `normals`.
+        /// Name of the stream: `normals`.
         stream: &'static str,
-        /// How many elements it has.
+        /// Number of its elements.
         length: usize,
-        /// How many vertices there are, and so how many elements it should have.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// The number of indices is no multiple of a primitive's.
+    /// The number of indices is not a multiple of the indices per primitive.
     #[error("{indices} indices are not {}", topology.name())]
     Primitives {
         /// Number of indices.
         indices: usize,
-        /// Primitives that they should make up.
+        /// Topology of the mesh.
         topology: Topology,
     },
     /// A mesh without area has levels of detail.
     #[error("{} have no levels of detail", topology.name())]
     Levels {
-        /// Primitives of the mesh.
+        /// Topology of the mesh.
         topology: Topology,
     },
-    /// An index names a vertex that there is not.
+    /// An index refers to a vertex that does not exist.
     #[error("index {index} of {vertices} vertices")]
     Index {
-        /// The index that is too large.
+        /// Invalid index.
         index: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
-    /// What a level states of its error is not finite, or less than what the one before states.
+    /// The error of a level is not finite, or smaller than that of the previous level.
     #[error("level {level} is {error_m} m from the mesh")]
     Level {
-        /// Its number; the mesh itself is 0.
+        /// Number of the level; the mesh itself is 0.
         level: usize,
-        /// What it states.
+        /// Error of the level.
         error_m: f32,
     },
     /// A number is not finite, or a direction is not of unit length.
     #[error("{element} of vertex {vertex} is {value:?}")]
     Value {
-        /// The attribute: `normal`.
+        /// Name of the attribute: `normal`.
         element: &'static str,
         /// Number of the vertex.
         vertex: usize,
-        /// The attribute's components at that vertex.
+        /// Components of the attribute at that vertex.
         value: Vec<f32>,
     },
 }
@@ -337,7 +336,7 @@ mod tests {
         }
     }
 
-    /// Lines and points may lack normals, and have no triangles whatever their number of indices is.
+    /// Lines and points may lack normals, and never have triangles.
     #[test]
     fn lines_and_points_have_no_triangles() {
         for topology in [Topology::Lines, Topology::Points] {

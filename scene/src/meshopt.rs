@@ -1,6 +1,6 @@
 //! Decoder of buffer views compressed with `EXT_meshopt_compression` or `KHR_meshopt_compression`.
 //!
-//! The formats are those of appendices A and B of the extension `KHR_meshopt_compression` of glTF 2.0.
+//! The formats are defined in appendices A and B of the glTF 2.0 extension `KHR_meshopt_compression`.
 //! `EXT_meshopt_compression` is the older subset without version 1 of attributes and without the color filter.
 //!
 //! ```text
@@ -8,9 +8,9 @@
 //! compressed bytes ───────────────────────────────┴─> attributes, triangles or indices ─> filter ─> bytes of the view
 //! ```
 //!
-//! Why own code: the crate `meshopt` wraps C++, and `meshopt-rs` 0.1.2 has neither version 1 of attributes nor the color
-//! filter, and both contain `unsafe`. This module has none, and it knows nothing of glTF documents: `import` parses the
-//! extension and charges memory.
+//! Existing crates were not suitable: `meshopt` wraps C++, `meshopt-rs` 0.1.2 has neither version 1 of attributes nor
+//! the color filter, and both contain `unsafe`. This module has no `unsafe` code and does not depend on glTF documents:
+//! `import` parses the extension and charges memory.
 
 mod attributes;
 mod error;
@@ -31,8 +31,8 @@ pub(crate) use layout::{Filter, Layout, Mode};
 ///
 /// # Errors
 ///
-/// Fails for a layout that the extension forbids, and for streams that are too short, too long or invalid. Nothing is
-/// allocated before the stream is known to be long enough for the layout.
+/// Fails for a layout that the extension forbids, and for streams that are too short, too long or invalid. The stream
+/// length is checked against the layout before anything is allocated.
 pub(crate) fn decode(layout: &Layout, bytes: &[u8]) -> Result<Vec<u8>, MeshoptError> {
     layout.check(bytes.len())?;
     let mut decoded = match layout.mode {

@@ -1,15 +1,14 @@
 //! Mip levels of images: colors are averaged in linear light, normals as vectors.
 //!
-//! A level is the area average of the level above: each texel covers `n / m` texels per axis, split
-//! exactly, so odd sizes neither shift the picture nor drop an edge. Levels are made from unrounded
-//! values and rounded once, for storage.
+//! A level is the exact area average of the previous one: each texel covers `n / m` texels per axis. Odd sizes thus
+//! neither shift the image nor drop an edge. Levels are computed from unrounded values and rounded once, for storage.
 
 use std::array::from_fn;
 
 use super::color::linear_from_srgb;
 use super::texture::{Image, TextureRole};
 
-/// One mip level of an image.
+/// Mip level of an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Level {
     /// Width in texels, at least 1.
@@ -20,24 +19,23 @@ pub struct Level {
     pub rgba8: Vec<u8>,
 }
 
-/// How many levels a picture of this size has down to 1 × 1: ⌊log₂ max⌋ + 1.
+/// Returns the number of mip levels of an image down to 1 × 1: ⌊log₂ max⌋ + 1.
 #[must_use]
 pub fn level_count(width: u32, height: u32) -> u32 {
     width.max(height).max(1).ilog2() + 1
 }
 
-/// The levels of `image` below the first, largest first; none for an image that [holds them](Image::missing_levels), or of
-/// one texel.
+/// Returns the mip levels of `image` below the first, largest first. Empty for an image of one texel, or one that
+/// [holds them](Image::missing_levels) already.
 ///
-/// - `Color`: averaged in linear light; colors weigh by their alpha, so that what is cut out does
-///   not bleed into what stays.
+/// - `Color`: averaged in linear light, weighted by alpha, so that transparent texels do not bleed into opaque ones.
 /// - `Linear`: averaged as stored.
-/// - `Normal`: averaged as vectors and brought back to unit length; opposite ones average to +z.
+/// - `Normal`: averaged as vectors and renormalized; opposite ones average to +z.
 #[must_use]
 pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
     let codec = Codec::new(role);
     let Some(rgba8) = image.rgba8().filter(|_| image.missing_levels()) else { return Vec::new() };
-    // The picture itself is never there as floats, which would take four times its bytes.
+    // The image is never converted to floats as a whole, which would need four times its bytes.
     let code = |texel: usize| from_fn(|channel| rgba8[4 * texel + channel]);
     let mut working = halved(image.width as usize, image.height as usize, |texel| codec.decode(code(texel)));
     let mut levels = Vec::new();
@@ -52,15 +50,15 @@ pub fn mip_levels(image: &Image, role: TextureRole) -> Vec<Level> {
     }
 }
 
-/// What [`mip_levels`] takes beside the picture at most, in bytes: levels of codes, a third of the picture's; and two levels
-/// of floats, of a quarter and a sixteenth of its texels.
+/// Returns the maximum bytes that [`mip_levels`] needs in addition to the image. Stored levels take a third of the
+/// image; two float levels have a quarter and a sixteenth of its texels.
 #[must_use]
 pub fn working_bytes(width: u32, height: u32) -> u64 {
     let texels = u64::from(width) * u64::from(height);
     texels * 4 / 3 + texels * 16 / 4 + texels * 16 / 16
 }
 
-/// A level as floats, in the space in which levels are averaged.
+/// A float level, in the color space in which levels are averaged.
 pub(super) struct FloatLevel {
     /// Width in texels.
     pub width: usize,
@@ -71,13 +69,13 @@ pub(super) struct FloatLevel {
 }
 
 impl FloatLevel {
-    /// The next level: ⌊n / 2⌋ texels a side, at least 1.
+    /// Returns the next level: ⌊n / 2⌋ texels a side, at least 1.
     pub fn halved(&self) -> Self {
         halved(self.width, self.height, |texel| self.texels[texel])
     }
 }
 
-/// The level below one of these sizes, whose texels are asked for by number.
+/// Returns the level below one of this size, whose texels are read by index.
 fn halved(from_width: usize, from_height: usize, texel: impl Fn(usize) -> [f32; 4]) -> FloatLevel {
     let (width, height) = ((from_width / 2).max(1), (from_height / 2).max(1));
     let columns: Vec<Taps> = (0..width).map(|x| taps(x, from_width, width)).collect();
@@ -99,7 +97,7 @@ fn halved(from_width: usize, from_height: usize, texel: impl Fn(usize) -> [f32; 
     FloatLevel { width, height, texels }
 }
 
-/// Up to three source texels along one axis with weights that sum to 1.
+/// Up to three source texels along an axis, with weights that sum to 1.
 struct Taps {
     first: usize,
     weights: [f32; 3],
@@ -112,9 +110,9 @@ impl Taps {
     }
 }
 
-/// What texel `i` of `small` covers of `large`, where `small` is ⌊`large` / 2⌋ or both are 1.
+/// Returns the texels of `large` that texel `i` of `small` covers, where `small` is ⌊`large` / 2⌋ or both are 1.
 fn taps(i: usize, large: usize, small: usize) -> Taps {
-    // In units of 1 / small of a source texel, the cover is [i·large, (i+1)·large).
+    // In units of 1 / small of a source texel, the texel covers [i·large, (i+1)·large).
     let (begin, end) = (i * large, (i + 1) * large);
     let (first, last) = (begin / small, (end - 1) / small);
     let covered = |texel: usize| ((texel + 1) * small).min(end) - (texel * small).max(begin);
@@ -125,12 +123,12 @@ fn taps(i: usize, large: usize, small: usize) -> Taps {
     }
 }
 
-/// Between stored codes and the values that are averaged.
+/// Conversion between stored 8-bit values and the values that are averaged.
 struct Codec {
     role: TextureRole,
-    /// Linear values of the 256 sRGB codes.
+    /// Linear values of the 256 sRGB steps.
     linear: Vec<f32>,
-    /// The linear value halfway (in code) between each code and the next: 255 thresholds.
+    /// Linear values halfway, in sRGB, between adjacent steps: 255 thresholds.
     thresholds: Vec<f32>,
 }
 
@@ -150,7 +148,7 @@ impl Codec {
             TextureRole::Linear => unit,
             TextureRole::Normal => from_fn(|i| if i < 3 { 2.0 * unit[i] - 1.0 } else { unit[3] }),
             TextureRole::Color => {
-                // Where nothing is opaque, colors still have to come from somewhere.
+                // Fully transparent texels still need a color.
                 let weight = unit[3].max(FAINTEST);
                 from_fn(|i| if i < 3 { self.linear[code[i] as usize] * weight } else { unit[3] })
             }
@@ -167,8 +165,8 @@ impl Codec {
                 [byte(unit.x), byte(unit.y), byte(unit.z), byte(value[3])]
             }
             TextureRole::Color => {
-                // Averages of max(α, ε) lie between max(mean α, ε) and mean α + ε; dividing by the
-                // largest color that is possible keeps the result within 0…1.
+                // Averages of max(α, ε) lie between max(mean α, ε) and mean α + ε. Division by the largest possible
+                // color keeps the result within 0…1.
                 let weight = value[3].max(FAINTEST);
                 let encode = |v: f32| {
                     let linear = v / weight;
@@ -180,7 +178,7 @@ impl Codec {
     }
 }
 
-/// The least weight of a color: far below one code of alpha.
+/// Minimum weight of a color: far below one 8-bit step of alpha.
 const FAINTEST: f32 = 1.0 / 65536.0;
 
 #[cfg(test)]
@@ -208,7 +206,7 @@ mod tests {
         assert_eq!(level_count(1, 777), 10);
     }
 
-    /// Black and white in turn: half the light is code 188, not 128.
+    /// Alternating black and white: half the light is the sRGB value 188, not 128.
     #[test]
     fn color_is_averaged_in_linear_light() {
         let checker = image(4, 4, |x, y| if (x + y) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] });
@@ -239,8 +237,8 @@ mod tests {
         assert_eq!(mip_levels(&opposite, TextureRole::Normal)[0].rgba8, [128, 128, 255, 255]);
     }
 
-    /// Three texels become one by thirds, and five become two by 2½ each: no texel is dropped, the
-    /// mean of the whole is kept.
+    /// Three texels average to one by thirds, and five to two by 2½ each: no texel is dropped, and the mean is
+    /// preserved.
     #[test]
     fn odd_sizes_use_every_texel() {
         let ramp = |n: u32| image(n, 1, |x, _| [(x * 40) as u8, 0, 0, 255]);

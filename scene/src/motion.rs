@@ -1,14 +1,14 @@
-//! Motion of a scene: a hierarchy of nodes, animations, and bodies (glTF 2.0, sections 3.5, 3.7.3 and 3.11).
+//! Motion of a scene: node hierarchy, animations, and deformable meshes (glTF 2.0, sections 3.5, 3.7.3 and 3.11).
 //!
-//! Animations change nodes, and by KHR_animation_pointer materials, lights and cameras. The vertices of bodies follow joints
-//! and morph targets.
+//! Animations change nodes, and with KHR_animation_pointer materials, lights and cameras. Joints and morph targets
+//! deform the vertices of bodies.
 //!
 //! ```text
 //! Animation ─ sample ─> nodes' transforms and weights ─ pose ─> Instance::world_from_model
 //!                                                      └ body ─> Mesh::positions, normals, tangents
 //! ```
 //!
-//! All of it is computed in f64, as everything between file and device is.
+//! Computations are in f64.
 
 mod body;
 mod pose;
@@ -27,66 +27,66 @@ use crate::camera::Camera;
 use crate::light::Light;
 use crate::material::{Material, MaterialId};
 
-/// What moves. A scene from code has none of it.
+/// Animations and the objects that they change. Empty for a scene built in code.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Nodes, parents before their children.
+    /// Nodes; parents precede their children.
     pub nodes: Vec<Node>,
-    /// The node that each instance hangs on, in the order of the scene's instances; empty for a scene without nodes.
+    /// Node of each instance, in the order of the scene's instances; empty for a scene without nodes.
     pub instance_nodes: Vec<usize>,
-    /// Transform of each instance to its node's axes: the identity, or a place of EXT_mesh_gpu_instancing. One for each
-    /// of `instance_nodes`.
+    /// Transform of each instance relative to its node: the identity, or a transform of EXT_mesh_gpu_instancing.
+    /// Parallel to `instance_nodes`.
     pub node_from_model: Vec<DMat4>,
-    /// Joints that bodies follow.
+    /// Skins of deformable meshes.
     pub skins: Vec<Skin>,
-    /// Meshes whose vertices move.
+    /// Deformable meshes.
     pub bodies: Vec<Body>,
-    /// What moves them, in the order of the file.
+    /// Animations, in file order.
     pub animations: Vec<Animation>,
-    /// Lights, cameras and materials at rest.
+    /// Rest state of lights, cameras and materials.
     pub rest: Rest,
 }
 
-/// Lights, cameras and materials while nothing moves them.
+/// Rest state of lights, cameras and materials.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rest {
-    /// Lights that hang on nodes, each with its node; [`Light::rest`] is a place in this list.
+    /// Lights attached to nodes, each with its node; [`Light::rest`] is an index into this list.
     pub lights: Vec<(usize, Light)>,
-    /// Cameras that hang on nodes, each with its node: the first cameras of the scene, in their order.
+    /// Cameras attached to nodes, each with its node: the first cameras of the scene, in their order.
     pub cameras: Vec<(usize, Camera)>,
     /// Materials that animations change.
     pub materials: Vec<(MaterialId, Material)>,
 }
 
-/// A node of the hierarchy.
+/// Node of the hierarchy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// Its parent, before it in the list.
+    /// Index of the parent, which precedes the node.
     pub parent: Option<usize>,
-    /// Its transform to its parent's axes while nothing moves it.
+    /// Local transform at rest.
     pub rest: Transform,
-    /// Weights of the morph targets of its mesh while nothing moves them.
+    /// Morph target weights of its mesh at rest.
     pub weights: Vec<f64>,
 }
 
-/// A node's own transform.
+/// Local transform of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transform {
-    /// As a matrix, which animations do not change.
+    /// Matrix; cannot be animated.
     Matrix(DMat4),
-    /// As what animations change.
+    /// Translation, rotation and scale; can be animated.
     Parts {
-        /// In meters.
+        /// Translation in meters.
         translation: DVec3,
-        /// Of unit length.
+        /// Unit quaternion.
         rotation: DQuat,
-        /// By axis.
+        /// Scale per axis.
         scale: DVec3,
     },
 }
 
 impl Transform {
-    /// The transform to the parent's axes.
+    /// Returns the transform to the parent's axes.
     #[must_use]
     pub fn matrix(&self) -> DMat4 {
         match *self {
@@ -98,26 +98,26 @@ impl Transform {
     }
 }
 
-/// A movement of nodes over time.
+/// Animation: changes of properties over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Animation {
-    /// By which users choose it; may be empty.
+    /// Name for selection by users; may be empty.
     pub name: String,
-    /// What changes what.
+    /// Animated properties and their curves.
     pub channels: Vec<Channel>,
 }
 
-/// The values of one property over time.
+/// Values of one property over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// The property.
+    /// Animated property.
     pub target: Target,
-    /// Its values over time.
+    /// Values over time.
     pub curve: Curve,
 }
 
 impl Animation {
-    /// When its last channel ends, in seconds.
+    /// Returns the end of the last channel, in seconds.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.channels.iter().map(|channel| channel.curve.end_s()).fold(0.0, f64::max)

@@ -1,28 +1,28 @@
-//! What moves the vertices of a mesh: joints and morph targets.
+//! Vertex deformation: joints and morph targets.
 
 use glam::Vec3;
 
 /// Skin influences and morph targets of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Moves {
-    /// Skin influences in sets of four, as glTF stores them (`JOINTS_n`, `WEIGHTS_n`); empty without a skin. Over all sets
-    /// the weights of a vertex add up to 1.
+    /// Skin influences in sets of four, as in glTF (`JOINTS_n`, `WEIGHTS_n`); empty without a skin. The weights of a
+    /// vertex over all sets sum to 1.
     pub influences: Vec<InfluenceSet>,
-    /// Morph targets, one for each weight of the node.
+    /// Morph targets, one per weight of the node.
     pub targets: Vec<MorphTarget>,
 }
 
 /// Four skin influences for each vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InfluenceSet {
-    /// Places in [`Skin::joints`](crate::motion::Skin::joints).
+    /// Indices into [`Skin::joints`](crate::motion::Skin::joints).
     pub joints: Vec<[u16; 4]>,
     /// Weight of each joint, 0 to 1.
     pub weights: Vec<[f32; 4]>,
 }
 
 impl Moves {
-    /// Replaces vertices by copies of `source[i]`, as `Mesh::gather_vertices` does.
+    /// Replaces vertices by copies of `source[i]`, like `Mesh::gather_vertices`.
     pub(crate) fn gather_vertices(&mut self, source: &[u32]) {
         for set in &mut self.influences {
             gather(&mut set.joints, source);
@@ -36,18 +36,18 @@ impl Moves {
     }
 }
 
-/// What a morph target adds to each vertex.
+/// Displacements of a morph target, one per vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MorphTarget {
-    /// In meters; empty for nothing.
+    /// Displacements of positions in meters; empty for none.
     pub positions: Vec<Vec3>,
-    /// Empty for nothing.
+    /// Changes of normals; empty for none.
     pub normals: Vec<Vec3>,
-    /// Empty for nothing.
+    /// Changes of tangents; empty for none.
     pub tangents: Vec<Vec3>,
 }
 
-/// Copies of `source[i]`, of a stream that there is.
+/// Replaces a stream by copies of `source[i]`, unless it is empty.
 pub(crate) fn gather<T: Copy>(stream: &mut Vec<T>, source: &[u32]) {
     if !stream.is_empty() {
         *stream = source.iter().map(|&s| stream[s as usize]).collect();

@@ -1,4 +1,4 @@
-//! Scenes by the names that users write.
+//! Opening scenes by name.
 
 use std::path::Path;
 
@@ -11,22 +11,23 @@ use crate::progress::ProgressFn;
 use crate::scene::Scene;
 
 impl Scene {
-    /// [`Scene::open_with`] the default options.
+    /// Opens a scene with the default options.
     ///
     /// # Errors
     ///
-    /// As there.
+    /// Returns the errors of [`Scene::open_with`].
     pub fn open(name: &str, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
         Self::open_with(name, &LoadOptions::default(), progress)
     }
 
-    /// Loads what a user names: a built-in scene, or a glTF or GLB file.
+    /// Opens a built-in scene, or loads a glTF or GLB file.
     ///
-    /// A built-in name wins over a file of the same name; `./spheres` is the file.
+    /// A built-in name takes precedence over a file of the same name; `./spheres` is the file.
     ///
     /// # Errors
     ///
-    /// One line that names the file and the reason; for a name that is neither, the built-in names.
+    /// Returns a one-line error with the file and the reason. If `name` is neither built-in nor a file, the error lists
+    /// the built-in names.
     pub fn open_with(name: &str, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
         let built_in = |name: &str| match (builtin(name), &options.variant) {
             (Ok(scene), Some(variant)) => {
@@ -38,7 +39,7 @@ impl Scene {
             return built_in(name);
         }
         let path = Path::new(name);
-        // A bare word that is no file is a misspelt name rather than a missing file.
+        // A name without path or extension that is not a file is probably a misspelled built-in name.
         let bare = !name.contains(['/', '\\', '.']);
         if bare && !path.exists() {
             return built_in(name);
@@ -47,7 +48,7 @@ impl Scene {
     }
 }
 
-/// A build without import refuses every file.
+/// Rejects every file: this build has no importer.
 #[cfg(not(feature = "gltf"))]
 fn load_with(path: &Path, _: &LoadOptions, _: &mut ProgressFn<'_>) -> Result<Scene, SceneError> {
     Err(SceneError::Unsupported { file: path.into(), feature: crate::error::Unsupported::Gltf })

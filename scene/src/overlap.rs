@@ -1,13 +1,13 @@
-//! What lies over what in a picture: layers of boxes, from the nearest.
+//! Overlap of boxes in the image: depth layers, counted from the nearest.
 
 use glam::{DVec2, DVec3, DVec4};
 
 use super::bounds::Aabb;
 use super::camera::Camera;
 
-/// For boxes sorted nearest first: in which layer each is, 0 for what nothing lies before. A box is one layer behind the last
-/// of those before it whose rectangle in the picture meets its own; so boxes side by side share a layer, and as many layers
-/// are needed as lie over one another in one place.
+/// Returns the depth layer of each box, for boxes sorted front to back. Layer 0 has nothing in front. A box is one
+/// layer behind the deepest preceding box whose image rectangle intersects its own. Boxes side by side share a layer,
+/// and the number of layers is the maximum overlap.
 #[must_use]
 pub fn layers_from_front(bounds: &[Aabb], camera: &Camera, width_over_height: f64) -> Vec<u8> {
     let rectangles: Vec<Rectangle> = bounds.iter().map(|own| Rectangle::of(own, camera, width_over_height)).collect();
@@ -19,12 +19,12 @@ pub fn layers_from_front(bounds: &[Aabb], camera: &Camera, width_over_height: f6
     layers
 }
 
-/// Points of the picture in each direction at which [`shaded_at_points`] looks.
+/// Number of sample points along each axis of the image in [`shaded_at_points`].
 pub const SHADED_POINTS: u32 = 32;
 
-/// At how many of [`SHADED_POINTS`]² points of the picture a box is seen, and how often boxes drawn in this order are shaded there
-/// altogether: each that is nearer than those before it. Points are the centers of as many equal parts of the picture. What is in a box
-/// is taken to be as near as the box, and what is about the eye as far as its other side.
+/// Estimates overdraw on a grid of [`SHADED_POINTS`]² image points, the centers of equal cells. Returns the number of
+/// points covered by a box. Also returns the total number of times that boxes, drawn in this order, pass the depth test
+/// there. The content of a box is assumed at the depth where the ray enters the box, or leaves it if the eye is inside.
 #[must_use]
 pub fn shaded_at_points<'a>(
     order: impl IntoIterator<Item = &'a Aabb>,
@@ -45,7 +45,7 @@ pub fn shaded_at_points<'a>(
     let rays: Vec<_> = (0..side * side).map(ray).collect();
     let mut nearest = vec![f64::INFINITY; rays.len()];
     let mut shaded = 0;
-    // Points from the first that is not before the edge to the last that is not beyond it.
+    // Range of points within the edges of the rectangle.
     let point = |ndc: f64| (ndc * 0.5 + 0.5) * f64::from(SHADED_POINTS) - 0.5;
     let within = |min: f64, max: f64| {
         let first = point(min).ceil().clamp(0.0, side as f64) as usize;
@@ -66,7 +66,8 @@ pub fn shaded_at_points<'a>(
     [nearest.iter().filter(|away| away.is_finite()).count() as u32, shaded]
 }
 
-/// How far along a ray a box begins, in lengths of `along`; where it ends, if the ray begins in it.
+/// Returns the distance along a ray, in lengths of `along`, at which it enters a box, or leaves it if the ray starts
+/// inside.
 fn away(bounds: &Aabb, from: DVec3, along: DVec3) -> Option<f64> {
     let [a, b] = [bounds.min, bounds.max].map(|side| (side - from) / along);
     let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
@@ -74,7 +75,7 @@ fn away(bounds: &Aabb, from: DVec3, along: DVec3) -> Option<f64> {
     (near <= far && at > 0.0).then_some(at)
 }
 
-/// What a box covers of the picture at most, in normalized device coordinates.
+/// Bounding rectangle of a box in the image, in normalized device coordinates.
 #[derive(Clone, Copy, Debug)]
 struct Rectangle {
     min: DVec2,
@@ -82,7 +83,7 @@ struct Rectangle {
 }
 
 impl Rectangle {
-    /// All of the picture, for what has no rectangle: a box about the eye, or one that is not finite.
+    /// The entire image, for a box around the eye or one that is not finite.
     const ALL: Self = Self { min: DVec2::NEG_INFINITY, max: DVec2::INFINITY };
 
     fn of(bounds: &Aabb, camera: &Camera, width_over_height: f64) -> Self {
@@ -122,8 +123,8 @@ mod tests {
         let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Projection::perspective(1.0, 0.1));
         let camera = camera.expect("a camera");
         let shaded = |centers: &[[f64; 3]]| shaded_at_points(&boxes(centers), &camera, 1.5);
-        // The near face, at 1.75, spans 0.25 / 0.956 of half the picture's height to either side, and two thirds of that across;
-        // centers of parts lie at odd numbers of thirty-seconds.
+        // The near face, at 1.75, spans 0.25 / 0.956 of half the image height on either side, and two thirds of that
+        // horizontally. Cell centers are at odd multiples of 1/32.
         let half = 0.25 / (1.75 * 0.5_f64.tan());
         let within = |half: f64| (0..32).filter(|i| (f64::from(2 * i + 1) / 32.0 - 1.0).abs() <= half).count() as u32;
         let near = within(half) * within(half / 1.5);
@@ -137,13 +138,13 @@ mod tests {
             [near; 2],
             "what is as near or outside is not shaded again"
         );
-        // A room about the eye is as far as its walls.
+        // A room around the eye is as far away as its walls.
         let all = SHADED_POINTS * SHADED_POINTS;
         let room = Aabb { min: DVec3::splat(-5.0), max: DVec3::splat(5.0) };
         let inner = boxes(&[front])[0];
         assert_eq!(shaded_at_points([&room, &inner], &camera, 1.5), [all, all + near]);
         assert_eq!(shaded_at_points([&inner, &room], &camera, 1.5), [all; 2]);
-        // A floor without height, seen from above it.
+        // A floor without thickness, seen from above.
         let floor = Aabb { min: DVec3::new(-9.0, -1.0, -9.0), max: DVec3::new(9.0, -1.0, 9.0) };
         let [seen, again] = shaded_at_points([&floor, &inner], &camera, 1.5);
         assert!(seen > all / 4 && again > seen, "{seen} {again}");
@@ -158,13 +159,13 @@ mod tests {
     fn what_lies_over_something_is_in_a_layer_before_it() {
         assert_eq!(layers(&[[0.0, 0.0, -2.0], [0.0, 0.0, -3.0], [0.0, 0.0, -4.0]]), [0, 1, 2]);
         assert_eq!(layers(&[[-1.0, 0.0, -2.0], [1.0, 0.0, -3.0], [0.0, 1.0, -4.0]]), [0; 3], "side by side");
-        // The third is behind the second alone, and the last behind all of them.
+        // The third is behind the second only, and the last behind all others.
         let around = [[-0.6, 0.0, -2.0], [0.6, 0.0, -3.0], [0.9, 0.0, -4.0], [0.0, 0.0, -60.0]];
         assert_eq!(layers(&around), [0, 0, 1, 0], "a far one between the near ones is behind none");
         assert_eq!(layers(&[]), [0; 0]);
     }
 
-    /// What the eye is in covers everything; what is not finite, too.
+    /// A box around the eye covers everything, as does one that is not finite.
     #[test]
     fn what_has_no_rectangle_lies_over_everything() {
         assert_eq!(layers(&[[0.1, 0.0, -0.1], [3.0, 0.0, -6.0], [-3.0, 0.0, -6.0]]), [0, 1, 1]);

@@ -1,14 +1,16 @@
-//! Work on the items of a list, on as many threads as there are cores.
+//! Parallel processing of list items on all cores.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, mpsc};
 use std::thread;
 
-/// Calls `work` for every item on some thread, and `done` on this one with each result, in the order in which they are
-/// finished. Before, `admit` is called for the item, in the order of the list and never for two at once: it may wait, for
-/// memory say, and what it returns is handed to `work`. After `done` breaks no further item is admitted; every item before
-/// one that was admitted has been admitted too, so all results up to the first missing one are there.
+/// Calls `work` for every item on some thread, and `done` on the calling thread with each result, in order of
+/// completion.
+///
+/// `admit` is called for each item before its work, in list order and never concurrently. It may wait, for memory for
+/// example; its result is passed to `work`. After `done` breaks, no further item is admitted. Every item before an
+/// admitted one has been admitted too, so all results up to the first missing one exist.
 pub fn in_parallel<T: Sync, A, R: Send>(
     items: &[T],
     admit: impl Fn(&T) -> A + Sync,
@@ -30,7 +32,7 @@ pub fn in_parallel<T: Sync, A, R: Send>(
                     *next += 1;
                     let admitted = admit(item);
                     drop(next);
-                    // Fails only when the receiver is gone, which is after the last result was taken.
+                    // Fails only if the receiver is gone, after the last result was taken.
                     if send.send((i, work(item, admitted))).is_err() {
                         break;
                     }

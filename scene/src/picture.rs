@@ -1,4 +1,4 @@
-//! Pictures as files: PNG for display codes, OpenEXR for linear light.
+//! Image files: PNG for display colors, OpenEXR for linear light.
 
 use std::path::{Path, PathBuf};
 
@@ -9,21 +9,21 @@ use crate::read::{file_bytes, read_file, read_start};
 
 pub use crate::codec::{CodecError, FileKind, HdrError, KtxError};
 
-/// The largest side of a picture that [`read_rgba8`] takes, in texels.
+/// Maximum width and height for [`read_rgba8`], in texels.
 const MAX_SIDE_TEXELS: u32 = 1 << 15;
 
-/// Bytes of a file in which a header is looked for first.
+/// Size of the prefix that is first searched for a header.
 const START_BYTES: u64 = 1 << 16;
 
-/// A picture could not be read.
+/// Error of reading an image file.
 #[derive(thiserror::Error)]
 pub enum PictureError {
-    /// The file does not decode.
+    /// The file cannot be decoded.
     #[error("{path}: {error}")]
     Codec {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Error of the decoder.
         error: CodecError,
     },
     /// The file cannot be read.
@@ -37,20 +37,20 @@ impl std::fmt::Debug for PictureError {
     }
 }
 
-/// Writes `rgba8` (four bytes a texel, rows from the top, sRGB codes, straight alpha) as PNG.
+/// Writes `rgba8` (four bytes a texel, rows from the top, sRGB-encoded, straight alpha) as PNG.
 ///
 /// # Errors
-/// When the size has no texels or another number of bytes, or nothing can be written.
+/// Fails if the size is zero or does not match the number of bytes, or if writing fails.
 #[cfg(feature = "png")]
 pub fn encode_png(to: impl std::io::Write, texels: [u32; 2], rgba8: &[u8]) -> Result<(), CodecError> {
     check_size(texels, rgba8.len())?;
     codec::png::encode(to, texels, rgba8)
 }
 
-/// Writes `rgba` (four numbers a texel, rows from the top, linear light) as OpenEXR of 32-bit floats.
+/// Writes `rgba` (four numbers a texel, rows from the top, linear light) as OpenEXR with 32-bit floats.
 ///
 /// # Errors
-/// As [`encode_png`].
+/// Returns the errors of [`encode_png`].
 #[cfg(feature = "exr")]
 pub fn encode_exr(
     to: impl std::io::Write + std::io::Seek,
@@ -61,28 +61,28 @@ pub fn encode_exr(
     codec::exr::encode(to, texels, rgba)
 }
 
-/// Reads a PNG, JPEG or WebP picture; returns its size and its display codes, four bytes a texel, rows from the top. The
-/// features `png`, `jpeg` and `webp` read one format each.
+/// Reads a PNG, JPEG or WebP image; returns its size and its sRGB-encoded texels, four bytes each, rows from the top.
+/// The features `png`, `jpeg` and `webp` enable one format each.
 ///
 /// # Errors
-/// When the file is missing or cannot be decoded.
+/// Fails if the file is missing or cannot be decoded.
 pub fn read_rgba8(path: &Path) -> Result<([u32; 2], Vec<u8>), PictureError> {
     let decoded = codec::decode_8(&read_file(path)?, MAX_SIDE_TEXELS);
     let Picture8 { size_texels, rgba8 } = decoded.map_err(|error| PictureError::Codec { path: path.into(), error })?;
     Ok((size_texels, rgba8))
 }
 
-/// The same within a budget: the header first, then the pixels. The loan has room for the texels and a copy of them on the way
-/// to a device; hold it as long as they are.
+/// Reads a PNG, JPEG or WebP image within a memory budget: first the header, then the pixels. The loan covers the
+/// texels and one copy for upload to a device; hold it as long as they exist.
 ///
 /// # Errors
-/// As [`read_rgba8`]; [`SceneError::Memory`] where the budget has not so much left.
+/// Returns the errors of [`read_rgba8`], and [`SceneError::Memory`] if the budget is exceeded.
 pub fn read_rgba8_within<'a>(path: &Path, memory: &'a Memory) -> Result<([u32; 2], Vec<u8>, Loan<'a>), PictureError> {
     let file_bytes = file_bytes(path)?;
     let codec = |error| PictureError::Codec { path: path.into(), error };
     let start = read_start(path, START_BYTES)?;
     let header = match codec::header_8(&start, MAX_SIDE_TEXELS) {
-        // Some have large metadata before it.
+        // Some files have large metadata before the header.
         Err(CodecError::Other(_)) if file_bytes > START_BYTES => {
             let _whole = memory.lend(file_bytes).map_err(|budget| over(path, String::new(), budget))?;
             codec::header_8(&read_file(path)?, MAX_SIDE_TEXELS)
@@ -138,7 +138,7 @@ mod tests {
         std::fs::create_dir_all(&folder)?;
         let png = folder.join("a.png");
         encode_png(std::fs::File::create(&png)?, [256, 256], &vec![7; 256 * 256 * 4])?;
-        // Its texels take 256 KiB, and as much again on the way to a device.
+        // The texels need 256 KiB, and the copy for upload as much.
         let told = read_rgba8_within(&png, &Memory::new(511 << 10)).map(drop).map_err(|told| told.to_string());
         assert!(told.as_ref().is_err_and(|told| told.contains("a.png") && told.contains("256×256")), "{told:?}");
         let memory = Memory::new(1 << 20);
@@ -147,7 +147,7 @@ mod tests {
         assert!(memory.keep(600 << 10).is_err(), "it is lent as long as the texels are there");
         drop(loan);
         assert!(memory.keep(600 << 10).is_ok());
-        // The header is cut off: no room is asked for.
+        // The header is truncated: no memory is requested.
         std::fs::write(&png, &std::fs::read(&png)?[..20])?;
         assert!(read_rgba8_within(&png, &memory).is_err_and(|told| told.to_string().contains("a.png")));
         std::fs::remove_dir_all(&folder)?;

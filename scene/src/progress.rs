@@ -1,4 +1,4 @@
-//! Progress of loading: how it is reported, and how a load is stopped.
+//! Progress reports of loading, and cancellation.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -6,24 +6,24 @@ use std::path::Path;
 use super::error::SceneError;
 pub use super::stage::Stage;
 
-/// One report: `done` of `total` items of `stage`, of which `item` is the latest.
+/// Progress report: `done` of `total` items of `stage` are finished, `item` last.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
-    /// The stage of loading.
+    /// Stage of loading.
     pub stage: Stage,
-    /// How many items of this stage are finished.
+    /// Number of finished items of this stage.
     pub done: usize,
-    /// How many items this stage has; at least `done`.
+    /// Number of items of this stage; at least `done`.
     pub total: usize,
-    /// The item just finished, as a name to show. May be empty.
+    /// Display name of the item just finished. May be empty.
     pub item: &'a str,
 }
 
-/// Called on the loading thread after each item; [`ControlFlow::Break`] stops the load, which then
+/// Progress callback, called on the loading thread after each item. [`ControlFlow::Break`] stops the load, which then
 /// returns [`SceneError::Interrupted`].
 pub type ProgressFn<'a> = dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'a;
 
-/// Passes a report on, and turns a request to stop into the error for `file`.
+/// Passes a report to the callback, and converts a request to stop to the error for `file`.
 pub fn report(progress: &mut ProgressFn<'_>, file: &Path, report: Progress<'_>) -> Result<(), SceneError> {
     match progress(report) {
         ControlFlow::Continue(()) => Ok(()),
@@ -31,7 +31,7 @@ pub fn report(progress: &mut ProgressFn<'_>, file: &Path, report: Progress<'_>) 
     }
 }
 
-/// A [`ProgressFn`] that shows nothing and never stops.
+/// A [`ProgressFn`] that ignores reports and never stops.
 pub fn silent(_: Progress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }

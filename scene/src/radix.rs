@@ -1,28 +1,28 @@
-//! Sorting by keys of 64 bits, digit by digit.
+//! Radix sort of 64-bit keys.
 
-/// Bits of a digit: its counts fill a first-level cache's eighth.
+/// Bits of a digit; its counters fill an eighth of an L1 cache.
 const DIGIT_BITS: u32 = 11;
 const DIGITS: usize = 1 << DIGIT_BITS;
-/// Fewer keys than this are compared, which then is faster than counting.
+/// Number of keys below which comparison sorting is faster.
 const FEW: usize = 512;
 
-/// A key that sorts by `order` first, in the order of its numbers (negative ones and zeros of both signs too, what is no
-/// number at the ends), then by `number`.
+/// Returns a key that sorts by `order`, then by `number`. Floats are in ascending order with −0 before +0, and NaN at
+/// both ends.
 #[must_use]
 pub fn sort_key(order: f32, number: u32) -> u64 {
     let bits = order.to_bits();
-    // All bits of negative numbers are turned, so that larger magnitudes come first; of others the sign alone.
+    // Negative numbers invert all bits, so that larger magnitudes come first; others set the sign bit.
     let rising = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
     u64::from(rising) << 32 | u64::from(number)
 }
 
-/// Sorts keys of which the lower halves already rise from key to key.
+/// Sorts keys whose lower halves are already ascending.
 pub fn sort_upper_halves(keys: &mut Vec<u64>, spare: &mut Vec<u64>) {
     if keys.len() < FEW {
         keys.sort_unstable();
         return;
     }
-    // What is longer holds what the first turn writes over.
+    // Excess elements are overwritten by the first pass.
     spare.resize(keys.len(), 0);
     const SHIFTS: [u32; 3] = [32, 32 + DIGIT_BITS, 32 + 2 * DIGIT_BITS];
     let digit_at = |key: u64, shift: u32| (key >> shift) as usize & (DIGITS - 1);
@@ -62,7 +62,7 @@ mod tests {
         assert!(sort_key(1.0, 2) < sort_key(1.0, 3));
     }
 
-    /// The library's stable sort is the oracle, on few keys and many, on values that differ in one digit alone, and on equal
+    /// Compared with the standard stable sort on few and many keys, on values that differ in one digit, and on equal
     /// ones.
     #[test]
     fn digits_sort_as_comparing_does() {

@@ -1,4 +1,4 @@
-//! Reading files whole.
+//! Reading of entire files.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -6,11 +6,11 @@ use std::path::Path;
 
 use crate::error::{Quantity, SceneError};
 
-/// The largest file that is read, in bytes.
+/// Maximum size of a file, in bytes.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
 
-/// The length of a file that may be read, in bytes. Nothing is opened: a pipe would wait for its writer, and opening a device
-/// may do anything.
+/// Returns the length of a regular file in bytes. Nothing is opened: opening a pipe would wait for its writer, and
+/// opening a device may have side effects.
 pub(crate) fn file_bytes(path: &Path) -> Result<u64, SceneError> {
     let failed = |source: io::Error| SceneError::Read { file: path.into(), source };
     let about = fs::metadata(path).map_err(failed)?;
@@ -24,19 +24,19 @@ pub(crate) fn file_bytes(path: &Path) -> Result<u64, SceneError> {
     Ok(about.len())
 }
 
-/// Reads a whole file, up to [`MAX_FILE_BYTES`]. Files of no length, which those of `/proc` say they are, are not opened.
+/// Reads an entire file of up to [`MAX_FILE_BYTES`]. Files of zero length, as in `/proc`, are not opened.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
     let failed = |source: io::Error| SceneError::Read { file: path.into(), source };
     let length = file_bytes(path)?;
     let mut bytes = Vec::with_capacity(length as usize);
     if length > 0 {
-        // The file may have grown since it was measured.
+        // The file may have grown since its length was read.
         File::open(path).and_then(|file| file.take(length).read_to_end(&mut bytes)).map_err(failed)?;
     }
     Ok(bytes)
 }
 
-/// The first bytes of a file, at most so many.
+/// Reads the first bytes of a file, at most `most_bytes`.
 pub(crate) fn read_start(path: &Path, most_bytes: u64) -> Result<Vec<u8>, SceneError> {
     let length = file_bytes(path)?.min(most_bytes);
     let mut bytes = Vec::with_capacity(length as usize);

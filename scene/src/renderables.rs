@@ -1,4 +1,4 @@
-//! What drawing a scene asks of its instances, view after view: arrays by instance number, made once.
+//! Per-instance data for drawing a scene repeatedly, in arrays by instance number.
 
 use std::borrow::Cow;
 
@@ -14,39 +14,39 @@ use super::material::{AlphaMode, Lobe, Lobes};
 use super::mesh::Topology;
 use super::scene::Scene;
 
-/// How a surface is drawn.
+/// Kind of drawing of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawKind {
     /// Opaque.
     Opaque,
     /// Alpha-tested.
     Mask,
-    /// Transmissive and not blended.
+    /// Transmissive, not blended.
     Transmit,
     /// Blended.
     Blend,
 }
 
 impl DrawKind {
-    /// True for surfaces that leave depth; triangles do so in shadow maps too.
+    /// Returns true for kinds that write depth; their triangles are also drawn into shadow maps.
     #[must_use]
     pub const fn leaves_depth(self) -> bool {
         matches!(self, Self::Opaque | Self::Mask)
     }
 }
 
-/// Instances in a row around which there is a box.
+/// Number of consecutive instances per bounding box.
 const BLOCK: usize = 64;
 
-/// The instances of a scene as culling, sorting and drawing read them; see the [module](self).
+/// Instances of a scene in the form used by culling, sorting and drawing; see the [module](self).
 ///
-/// A scene that stays as it is needs this once. Of one that moves, [`Renderables::update`] takes what moved; other changes
-/// need it anew.
+/// A static scene needs this once. If instances move, [`Renderables::update`] applies the changes; other changes
+/// require a new one.
 #[derive(Clone, Debug, Default)]
 pub struct Renderables {
     bounds: Vec<Aabb>,
     whole: Aabb,
-    /// Around each [`BLOCK`] instances.
+    /// Bounding box of each [`BLOCK`] of instances.
     blocks: Vec<Aabb>,
     boxes: BoxArrays,
     origins: Vec<DVec3>,
@@ -54,10 +54,10 @@ pub struct Renderables {
     kinds: Vec<DrawKind>,
     casts: Vec<bool>,
     layers: Vec<u8>,
-    /// Layers that all instances are in, and light channels that all have.
+    /// Layers and light channels that all instances have in common.
     common_layers: u8,
     common_channels: u8,
-    /// By instance when it is drawn; empty where all are drawn by distance alone.
+    /// Draw order of each instance; empty if all are ordered by distance alone.
     orders: Vec<DrawOrder>,
     mirrored: Vec<bool>,
     flat: Vec<(u32, usize)>,
@@ -67,14 +67,14 @@ pub struct Renderables {
     levels: InstanceLevels,
 }
 
-/// When an instance is drawn among those of its kind.
+/// Draw order of an instance among those of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct DrawOrder {
-    /// The instance's priority, 0 to 7.
+    /// Priority, 0 to 7.
     pub priority: u8,
-    /// True for blended instances that are drawn by distance.
+    /// True for blended instances that are ordered by distance.
     pub by_distance: bool,
-    /// The instance's order among blended ones.
+    /// Order among blended instances.
     pub blend_order: u16,
 }
 
@@ -88,18 +88,18 @@ impl DrawOrder {
     }
 }
 
-/// What instances that are drawn together share, in the order in which changing it is dear: shaders, culling, what light
-/// they receive, textures, geometry; and the priority.
+/// State shared by instances of one batch, the most expensive change first: shaders, culling, received light, textures,
+/// geometry; last the priority.
 type SurfaceKey = (Topology, Lobes, bool, bool, u16, Option<usize>, usize, u8);
 
 impl Renderables {
-    /// Those of `scene`.
+    /// Collects the data of `scene`.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let instances = &scene.instances;
         let keys: Vec<SurfaceKey> = instances.iter().map(|instance| surface_key(scene, instance)).collect();
         let kinds: Vec<DrawKind> = instances.iter().map(|instance| kind_of(scene, instance)).collect();
-        // Depth of opaque surfaces asks for no material but for its stencil.
+        // The depth of opaque surfaces depends on the material only by its stencil state.
         let depth_key = |(key, kind): (&SurfaceKey, &DrawKind)| {
             let (topology, _, double_sided, mirrored, _, material, mesh, priority) = *key;
             let counts = |material: &usize| *kind != DrawKind::Opaque || scene.materials[*material].stencil.is_some();
@@ -135,14 +135,14 @@ impl Renderables {
         own
     }
 
-    /// Takes over where the instances `moved` stand and what surrounds them. Number, meshes, materials and draw
-    /// options of instances are what they were.
+    /// Updates position and bounds of the instances `moved`. Their number, meshes, materials and draw options must be
+    /// unchanged.
     ///
     /// # Panics
-    /// When there is no such instance.
+    /// If an instance does not exist.
     pub fn update(&mut self, scene: &Scene, moved: &[usize]) {
         if moved.iter().any(|number| scene.instances[*number].is_mirrored() != self.mirrored[*number]) {
-            // It is drawn with others than before.
+            // The batch of the instance changes.
             *self = Self::new(scene);
             return;
         }
@@ -157,8 +157,8 @@ impl Renderables {
         self.sum_up();
     }
 
-    /// Returns the instances as a view shows them whose visible layers are these: others have no bounds and cast no shadow.
-    /// It copies the arrays where an instance is in none of the layers.
+    /// Returns the instances as seen by a view with these visible layers: hidden ones have empty bounds and cast no
+    /// shadow. Copies the arrays if an instance is hidden.
     #[must_use]
     pub fn shown(&self, visible_layers: u8) -> Cow<'_, Self> {
         let hides = |layers: &u8| layers & visible_layers == 0;
@@ -174,7 +174,7 @@ impl Renderables {
         Cow::Owned(own)
     }
 
-    /// What is known of all boxes together.
+    /// Computes the properties of all boxes together.
     fn sum_up(&mut self) {
         self.blocks.clear();
         self.blocks.extend(self.bounds.chunks(BLOCK).map(around));
@@ -190,34 +190,34 @@ impl Renderables {
         }
     }
 
-    /// The box around each instance, world space.
+    /// Returns the bounding box of each instance, in world space.
     #[must_use]
     pub fn bounds(&self) -> &[Aabb] {
         &self.bounds
     }
 
-    /// The same as arrays of coordinates.
+    /// Returns the bounding boxes as arrays of coordinates.
     #[must_use]
     pub fn boxes(&self) -> &BoxArrays {
         &self.boxes
     }
 
-    /// The box around all.
+    /// Returns the bounding box of all instances.
     #[must_use]
     pub fn whole(&self) -> Aabb {
         self.whole
     }
 
-    /// Instances in a row, by the number of the first and their boxes, and the box around each row.
+    /// Returns blocks of consecutive instances: the first instance number, the boxes, and their common bounding box.
     pub fn rows(&self) -> impl Iterator<Item = (u32, &[Aabb], &Aabb)> {
         let firsts = (0..).step_by(BLOCK);
         firsts.zip(self.bounds.chunks(BLOCK).zip(&self.blocks)).map(|(first, (row, around))| (first, row, around))
     }
 
-    /// The box around these instances, whose numbers rise.
+    /// Returns the bounding box of these instances, whose numbers are ascending.
     ///
     /// # Panics
-    /// When there is no such instance.
+    /// If an instance does not exist.
     #[must_use]
     pub fn around(&self, mut numbers: &[u32]) -> Aabb {
         let mut all = Aabb::EMPTY;
@@ -232,67 +232,68 @@ impl Renderables {
         all
     }
 
-    /// Where the zero point of each instance's mesh is, in m, world space.
+    /// Returns the origin of each instance's mesh in meters, in world space.
     #[must_use]
     pub fn origins(&self) -> &[DVec3] {
         &self.origins
     }
 
-    /// How each is drawn.
+    /// Returns the kind of drawing of each instance.
     #[must_use]
     pub fn kinds(&self) -> &[DrawKind] {
         &self.kinds
     }
 
-    /// By instance, true if it is drawn into shadow maps: opaque and masked triangles that
-    /// [cast](DrawOptions::casts_shadows) are, lines and points are not.
+    /// Returns, for each instance, true if it is drawn into shadow maps. These are opaque and masked triangles that
+    /// [cast shadows](DrawOptions::casts_shadows), but not lines and points.
     #[must_use]
     pub fn casts(&self) -> &[bool] {
         &self.casts
     }
 
-    /// Light channels that all instances have.
+    /// Returns the light channels that all instances have in common.
     #[must_use]
     pub fn common_light_channels(&self) -> u8 {
         self.common_channels
     }
 
-    /// By instance when it is drawn; empty where all are drawn by distance alone.
+    /// Returns the draw order of each instance; empty if all are ordered by distance alone.
     pub(crate) fn orders(&self) -> &[DrawOrder] {
         &self.orders
     }
 
-    /// A number for the placement of each: equal ones have equal numbers, and of different ones one pair in 2⁶⁴ has.
+    /// Returns a hash of each instance's transform: equal transforms have equal hashes, and different ones collide with
+    /// probability 2⁻⁶⁴.
     #[must_use]
     pub fn stamps(&self) -> &[u64] {
         &self.stamps
     }
 
-    /// Shadow casters without thickness, each with the axis along which it has none.
+    /// Returns the shadow casters without thickness, each with the axis of zero extent.
     #[must_use]
     pub fn flat(&self) -> &[(u32, usize)] {
         &self.flat
     }
 
-    /// The box around all shadow casters that have a thickness.
+    /// Returns the bounding box of all shadow casters with thickness.
     #[must_use]
     pub fn solid_casters(&self) -> Aabb {
         self.solid_casters
     }
 
-    /// Which are drawn with the same shader, culling, material and mesh.
+    /// Returns the groups of instances with the same shader, culling, material and mesh.
     #[must_use]
     pub fn surfaces(&self) -> &Groups {
         &self.surfaces
     }
 
-    /// The same for drawing depth alone, to which the material of opaque ones is nothing.
+    /// Returns the groups for depth-only drawing, where the material of opaque instances does not matter.
     #[must_use]
     pub fn depths(&self) -> &Groups {
         &self.depths
     }
 
-    /// Of which level of detail each may be drawn.
+    /// Returns the levels of detail that each instance may use.
     #[must_use]
     pub fn levels(&self) -> &InstanceLevels {
         &self.levels
@@ -319,7 +320,7 @@ fn surface_key(scene: &Scene, instance: &Instance) -> SurfaceKey {
     )
 }
 
-/// When instances are drawn; nothing where all are drawn by distance alone.
+/// Returns the draw order of instances; empty if all are ordered by distance alone.
 fn orders(instances: &[Instance]) -> Vec<DrawOrder> {
     let default = DrawOrder::of(&DrawOptions::default());
     match instances.iter().any(|instance| DrawOrder::of(&instance.draw) != default) {
@@ -338,7 +339,7 @@ fn kind_of(scene: &Scene, instance: &Instance) -> DrawKind {
     }
 }
 
-/// Sixty-four bits of a matrix's: multiplied and turned number by number, as Fx and wyhash do.
+/// Returns a 64-bit hash of a matrix: numbers are multiplied and rotated, as in Fx and wyhash.
 fn stamp(matrix: &DMat4) -> u64 {
     let mix = |state: u64, value: f64| {
         let product = u128::from(state ^ value.to_bits()) * 0x9e37_79b9_7f4a_7c15;

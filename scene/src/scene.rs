@@ -1,4 +1,4 @@
-//! The scene as plain arrays.
+//! Scene as plain arrays.
 
 use std::path::PathBuf;
 
@@ -13,10 +13,10 @@ use crate::mesh::{Mesh, MeshId};
 use crate::motion::Motion;
 use crate::texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, TextureRole};
 
-/// Everything that can be drawn, and what lights it.
+/// Scene: meshes, materials, textures, instances, lights and cameras.
 ///
-/// Ids are positions in these arrays; every id in a scene is valid in that scene. Scenes come from files and names
-/// ([`Scene::open`]), or are built in code:
+/// Ids are positions in these arrays and are always valid. Scenes are loaded by file or name ([`Scene::open`]), or
+/// built in code:
 ///
 /// ```
 /// use framegraph_scene::{Material, Scene, geometry};
@@ -31,7 +31,7 @@ use crate::texture::{Image, ImageId, Sampler, SamplerId, Texture, TextureId, Tex
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// The file's stem or the built-in name.
+    /// Stem of the file name, or the built-in name.
     pub name: String,
     /// Meshes, shared by instances.
     pub meshes: Vec<Mesh>,
@@ -39,40 +39,40 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Decoded images, shared by textures.
     pub images: Vec<Image>,
-    /// Wrapping and filtering, shared by textures.
+    /// Texture sampling states, shared by textures.
     pub samplers: Vec<Sampler>,
-    /// Images with role and sampler, as materials use them.
+    /// Images with their roles and samplers, used by materials.
     pub textures: Vec<Texture>,
-    /// What is drawn: each a mesh with a material at a place.
+    /// Instances: meshes placed with a material.
     pub instances: Vec<Instance>,
-    /// What moves, if anything does: [`Scene::pose`].
+    /// Node hierarchy and animations, if any; see [`Scene::pose`].
     pub motion: Motion,
-    /// Lights of the scene itself. What surrounds it is no part of it: see
-    /// [`Environment`](crate::environment::Environment), which brings its own sun.
+    /// Lights of the scene itself. The surroundings with their sun are a separate
+    /// [`Environment`](crate::environment::Environment).
     pub lights: Vec<Light>,
     /// Cameras, in the order of the file.
     pub cameras: Vec<Camera>,
-    /// Diffuse albedo of level ground that goes on where the scene's own ends, linear Rec.709 in 0…1: what a sky is to show
-    /// below the horizon, so that the two meet unseen. None for a scene that does not say.
+    /// Diffuse albedo of level ground that continues beyond the scene, linear Rec.709 in 0…1. A sky shows it below the
+    /// horizon for a seamless transition. `None` if unspecified.
     pub ground_albedo: Option<Vec3>,
     /// Names of the file's material variants (KHR_materials_variants);
-    /// [`LoadOptions::variant`](crate::LoadOptions::variant) chooses one.
+    /// [`LoadOptions::variant`](crate::LoadOptions::variant) selects one.
     pub variants: Vec<String>,
-    /// The files that it was read from, with buffers and images beside it; none for a built-in scene.
+    /// Files from which the scene was read, including buffers and images; empty for a built-in scene.
     pub files: Vec<PathBuf>,
-    /// What was ignored or repaired while loading, a line each.
+    /// Warnings about ignored or repaired parts of the file, one line each.
     pub warnings: Vec<String>,
 }
 
 impl Scene {
-    /// The box around all instances; empty for a scene without any.
+    /// Returns the bounding box of all instances; empty without instances.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         self.instances.iter().fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
     }
 
-    /// The same without level instances where ground goes on beyond the scene ([`ground_albedo`](Self::ground_albedo)): what
-    /// there is to look at.
+    /// Returns the bounding box for framing the scene. If ground continues beyond the scene
+    /// ([`ground_albedo`](Self::ground_albedo)), level instances are excluded.
     #[must_use]
     pub fn bounds_above_ground(&self) -> Aabb {
         let stands = |bounds: &Aabb| self.ground_albedo.is_none() || bounds.half_extent().y > 0.0;
@@ -80,7 +80,7 @@ impl Scene {
         above.reduce(|all, own| all.union(own)).unwrap_or_else(|| self.bounds())
     }
 
-    /// The first camera of the scene, or [`orbit`] when it has none.
+    /// Returns the first camera of the scene, or [`orbit`] if there is none.
     #[must_use]
     pub fn default_camera(&self, width_over_height: f64) -> Camera {
         match self.cameras.first() {
@@ -89,20 +89,20 @@ impl Scene {
         }
     }
 
-    /// The number of triangles drawn, instances counted each.
+    /// Returns the number of drawn triangles; every instance counts.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.instances.iter().map(|instance| self.meshes[instance.mesh.index()].triangle_count()).sum()
     }
 
-    /// The lobes that the materials of what is drawn call for.
+    /// Returns the lobes of all materials that instances use.
     #[must_use]
     pub fn lobes(&self) -> Lobes {
         let lobes = self.instances.iter().map(|instance| self.materials[instance.material.index()].lobes());
         lobes.fold(Lobes::NONE, Lobes::union)
     }
 
-    /// True if the material of an instance tests or writes the stencil buffer.
+    /// Returns true if the material of an instance tests or writes the stencil buffer.
     #[must_use]
     pub fn uses_stencil(&self) -> bool {
         self.instances.iter().any(|instance| self.materials[instance.material.index()].stencil.is_some())
@@ -138,7 +138,7 @@ impl Scene {
     ///
     /// # Panics
     ///
-    /// When the mesh is of another scene and this one has fewer.
+    /// If the mesh does not exist in this scene.
     pub fn add_instance(&mut self, name: &str, mesh: MeshId, material: MaterialId, world_from_model: DMat4) {
         let bounds = &self.meshes[mesh.index()].bounds;
         let instance = Instance::new(name, mesh, material, world_from_model, bounds);

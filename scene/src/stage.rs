@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-/// A stage of loading, as progress reports name it.
+/// Stage of loading, for progress reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Reading files named by the scene.
+    /// Reading files that the scene refers to.
     Files,
     /// Decompressing geometry: buffer views and Draco meshes.
     Decompression,
@@ -17,13 +17,13 @@ pub enum Stage {
     Geometry,
     /// Making levels of detail.
     Levels,
-    /// Decoding or evaluating an environment.
+    /// Decoding or generating an environment.
     Environment,
-    /// Filtering an environment on the GPU, and integrating the tables that go with it.
+    /// Prefiltering an environment on the GPU, and integrating lookup tables.
     Lighting,
     /// Packing vertices for the GPU.
     Vertices,
-    /// Copying to the GPU, mip levels included.
+    /// Copying to the GPU, including mip levels.
     Upload,
 }
 

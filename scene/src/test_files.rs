@@ -1,9 +1,10 @@
-//! The files that the tests of this crate read: those under `tests/` of the repository.
+//! Test files of this crate: those under `tests/` of the repository.
 
 use std::path::{Path, PathBuf};
 
-/// A file under `tests/` of the repository, or, of its `assets/`, in `shared/` beside the repository; `None`, and a line
-/// that says so, where it is in neither: `tests/assets/README.md` says where to find what is not committed.
+/// Returns a file under `tests/` of the repository; for `assets/`, also in `shared/` beside the repository. If it is
+/// missing, returns `None` and prints a line. `tests/assets/README.md` describes how to get files that are not
+/// committed.
 pub fn file(path: &str) -> Option<PathBuf> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let places = [repository.join("tests").join(path), repository.join("../shared").join(path)];

@@ -1,23 +1,22 @@
-//! Images, how they are sampled, and what their texels mean.
+//! Images, samplers and textures.
 
 use glam::{Mat3, Vec2};
 
 use super::id::Id;
 
-/// An image of a scene.
+/// Id of an image of a scene.
 pub type ImageId = Id<Image>;
-/// A texture of a scene: an image with its role and sampler.
+/// Id of a texture of a scene: an image with its role and sampler.
 pub type TextureId = Id<Texture>;
-/// A sampler of a scene.
+/// Id of a sampler of a scene.
 pub type SamplerId = Id<Sampler>;
 
-/// A decoded picture: row 0 at the top, alpha not premultiplied.
+/// Decoded image: row 0 at the top, straight alpha.
 ///
-/// The texels carry no color space of their own; [`TextureRole`] says how to read them. 16-bit
-/// sources are rounded to 8 bits.
+/// The image has no color space; [`TextureRole`] defines how to interpret texels. 16-bit sources are rounded to 8 bits.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
-    /// For messages: the image's file, or the file it is embedded in with its number and name.
+    /// Name for messages: the image's file, or the containing file with the image's number and name.
     pub name: String,
     /// Width in texels, at least 1.
     pub width: u32,
@@ -25,8 +24,8 @@ pub struct Image {
     pub height: u32,
     /// Format of the texels of every level.
     pub format: ImageFormat,
-    /// Bytes of the first mip level, or of every level down to 1 × 1, largest first. [`Image::missing_levels`] tells the two
-    /// apart. Empty after the image was uploaded and freed.
+    /// Bytes of the first mip level alone, or of every level down to 1 × 1, largest first; see
+    /// [`Image::missing_levels`]. Empty after the image was uploaded and freed.
     pub levels: Vec<Vec<u8>>,
 }
 
@@ -38,7 +37,8 @@ impl Image {
         Self { name: name.into(), width, height, format: ImageFormat::Rgba8, levels: vec![texels] }
     }
 
-    /// Returns the texels of the first level, four bytes each; `None` for an image of blocks or one without levels.
+    /// Returns the texels of the first level, four bytes each; `None` for a block-compressed image or one without
+    /// levels.
     #[must_use]
     pub fn rgba8(&self) -> Option<&[u8]> {
         self.levels.first().filter(|_| self.format == ImageFormat::Rgba8).map(Vec::as_slice)
@@ -50,8 +50,8 @@ impl Image {
         self.levels.iter().map(|level| level.len() as u64).sum()
     }
 
-    /// Returns whether the image holds the first mip level alone and has more than one texel, so that the others are to be
-    /// made. Images of blocks always hold every level.
+    /// Returns true if the image has only the first of several mip levels, so that the others must be generated.
+    /// Block-compressed images always have all levels.
     #[must_use]
     pub fn missing_levels(&self) -> bool {
         self.levels.len() == 1 && self.width.max(self.height) > 1
@@ -64,7 +64,7 @@ impl Image {
     }
 }
 
-/// Width and height of a level of a picture of this size, at least 1 each.
+/// Returns the width and height of a mip level, at least 1 each.
 pub(crate) fn level_size(size_texels: [u32; 2], level: u32) -> [u32; 2] {
     size_texels.map(|side| side.checked_shr(level).unwrap_or(0).max(1))
 }
@@ -84,7 +84,7 @@ pub enum ImageFormat {
 }
 
 impl ImageFormat {
-    /// Returns the texels along a side of a block: 1 for formats without blocks.
+    /// Returns the side of a block in texels; 1 for uncompressed formats.
     #[must_use]
     pub fn block_side_texels(self) -> u32 {
         match self {
@@ -93,7 +93,7 @@ impl ImageFormat {
         }
     }
 
-    /// Returns the bytes of a block, or of a texel for formats without blocks.
+    /// Returns the bytes of a block, or of a texel for uncompressed formats.
     #[must_use]
     pub fn block_bytes(self) -> u32 {
         match self {
@@ -102,7 +102,7 @@ impl ImageFormat {
         }
     }
 
-    /// Returns the bytes of a level of this size. Blocks at its right and lower edge count whole.
+    /// Returns the bytes of a level of this size. Partial blocks at the right and bottom edges count as whole ones.
     #[must_use]
     pub fn level_bytes(self, [width, height]: [u32; 2]) -> u64 {
         let blocks = |side: u32| u64::from(side.div_ceil(self.block_side_texels()));
@@ -110,7 +110,8 @@ impl ImageFormat {
     }
 }
 
-/// Block-compressed formats that a device can sample; none by default, which keeps every image in [`ImageFormat::Rgba8`].
+/// Block-compressed formats that a device can sample. By default none, which keeps every image in
+/// [`ImageFormat::Rgba8`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BlockFormats {
     /// [`ImageFormat::Bc7`]: most desktop GPUs.
@@ -121,56 +122,57 @@ pub struct BlockFormats {
     pub astc: bool,
 }
 
-/// What the texels of a texture mean, which decides the GPU format and how mip levels are made.
+/// Interpretation of the texels of a texture; determines the GPU format and the averaging of mip levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum TextureRole {
     /// sRGB-encoded Rec.709 color, linear alpha.
     Color,
     /// Linear values: metallic, roughness, occlusion.
     Linear,
-    /// Tangent-space unit vectors, `v = 2 t − 1`; mip levels are renormalised.
+    /// Tangent-space unit vectors, `v = 2 t − 1`; mip levels are renormalized.
     Normal,
 }
 
-/// Which texel is sampled at coordinates outside of 0…1.
+/// Addressing mode for texture coordinates outside of 0…1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Wrap {
-    /// The picture repeats.
+    /// Repeats the image.
     #[default]
     Repeat,
-    /// The picture repeats, mirrored every second time.
+    /// Repeats the image, mirrored every second time.
     MirroredRepeat,
-    /// The edge texel continues.
+    /// Extends the edge texel.
     ClampToEdge,
 }
 
-/// How neighboring texels, or levels, are combined.
+/// Filter between neighboring texels or mip levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Filter {
-    /// The nearest one.
+    /// Nearest texel or level.
     Nearest,
-    /// The mean of the nearest ones, weighted by distance.
+    /// Linear interpolation.
     #[default]
     Linear,
 }
 
-/// How a texture is sampled (glTF 2.0, section 5.26).
+/// Texture sampling state (glTF 2.0, section 5.26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Sampler {
-    /// Wrapping along u.
+    /// Addressing mode along u.
     pub wrap_u: Wrap,
-    /// Wrapping along v.
+    /// Addressing mode along v.
     pub wrap_v: Wrap,
-    /// Filter when a texel covers more than a pixel.
+    /// Magnification filter: texels are larger than pixels.
     pub mag: Filter,
-    /// Filter within a level when a texel covers less than a pixel.
+    /// Minification filter within a level: texels are smaller than pixels.
     pub min: Filter,
-    /// Filter between levels; `None` samples level 0 only.
+    /// Filter between mip levels; `None` samples only level 0.
     pub mip: Option<Filter>,
 }
 
 impl Default for Sampler {
-    /// Repeat, trilinear: what glTF leaves to the implementation when no sampler is given.
+    /// Returns repeat and trilinear filtering, for textures without a sampler; glTF leaves the choice to the
+    /// implementation.
     fn default() -> Self {
         Self {
             wrap_u: Wrap::Repeat,
@@ -182,24 +184,24 @@ impl Default for Sampler {
     }
 }
 
-/// An image read in one role through one sampler. One image may stand in several textures.
+/// An image with a role and a sampler. Several textures may share an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Texture {
-    /// The image that is sampled.
+    /// Image to sample.
     pub image: ImageId,
-    /// What its texels mean in this texture.
+    /// Interpretation of the texels.
     pub role: TextureRole,
-    /// Wrapping and filtering.
+    /// Sampler: addressing and filtering.
     pub sampler: SamplerId,
 }
 
-/// An affine map of texture coordinates (KHR_texture_transform): scale, then rotation, then offset.
+/// Affine transform of texture coordinates (KHR_texture_transform): scale, then rotation, then offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UvTransform {
-    /// Translation, applied last; 1 is the width or height of the picture.
+    /// Translation, applied last; 1 is the width or height of the image.
     pub offset: Vec2,
-    /// Rotation in radians, applied second; a quarter turn takes (u, v) to (v, −u), counter-clockwise on a screen where v
-    /// grows downwards.
+    /// Rotation in radians, applied second. A quarter turn maps (u, v) to (v, −u), counter-clockwise on a screen with v
+    /// pointing down.
     pub rotation_rad: f32,
     /// Scale along u and v, applied first.
     pub scale: Vec2,
@@ -212,9 +214,8 @@ impl Default for UvTransform {
 }
 
 impl UvTransform {
-    /// The matrix to multiply `(u, v, 1)` with: translation · rotation · scale
-    /// (KHR_texture_transform, "Overview"; the sign of the rotation is that of its first example,
-    /// since the sample code there can be read either way).
+    /// Returns the matrix that multiplies `(u, v, 1)`: translation · rotation · scale. The sign of the rotation follows
+    /// the first example in the overview of KHR_texture_transform, since its sample code is ambiguous.
     #[must_use]
     pub fn matrix(&self) -> Mat3 {
         let (sin, cos) = self.rotation_rad.sin_cos();
@@ -223,12 +224,12 @@ impl UvTransform {
     }
 }
 
-/// A texture as a material uses it.
+/// Reference of a material to a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureSlot {
-    /// The texture that is sampled.
+    /// Texture to sample.
     pub texture: TextureId,
-    /// The set of texture coordinates: 0 or 1.
+    /// Set of texture coordinates: 0 or 1.
     pub uv_set: u32,
     /// Transform of the coordinates before sampling.
     pub transform: UvTransform,
@@ -239,8 +240,8 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    /// The extension's first example shows "only the lower left quadrant, rotated": with the other
-    /// sign the picture would leave 0…1.
+    /// The extension's first example shows "only the lower left quadrant, rotated"; with the opposite sign the image
+    /// would leave 0…1.
     #[test]
     fn rotation_has_the_sign_of_the_specifications_example() {
         let matrix = UvTransform {
@@ -257,7 +258,7 @@ mod tests {
         }
     }
 
-    /// An uneven scale tells scale-then-rotate from rotate-then-scale.
+    /// A non-uniform scale distinguishes scale-then-rotate from rotate-then-scale.
     #[test]
     fn transform_scales_before_it_rotates() {
         let transform = UvTransform {

@@ -1,4 +1,4 @@
-//! `balls`: five materials under an environment: a mirror, rough metal, white paint, cloth, and metal under a clear coat.
+//! `balls`: five materials that show an environment.
 
 use glam::{DMat4, DVec3, Vec3};
 
@@ -11,8 +11,8 @@ use crate::scene::Scene;
 const RADIUS_M: f32 = 0.5;
 const SPACING_M: f64 = 1.12;
 
-/// From left to right: smooth silver, gold of roughness 0.45, white of albedo 0.8, cloth with a sheen, red metal under a clear
-/// coat.
+/// Returns the scene. From left to right: smooth silver, gold of roughness 0.45, white of albedo 0.8, cloth with a
+/// sheen, red metal under a clear coat.
 pub(super) fn scene() -> Scene {
     let mut scene = Scene { name: "balls".into(), ..Scene::default() };
     let ball = scene.add_mesh(sphere(RADIUS_M, 96, 48));

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::camera::{Camera, Projection};
 
-/// A camera of a built-in scene, upright, with the far plane at infinity.
+/// Returns an upright camera of a built-in scene, with the far plane at infinity.
 pub(super) fn camera(name: &str, eye: DVec3, target: DVec3, fov_y_deg: f64) -> Camera {
     let projection = Projection::perspective(fov_y_deg.to_radians(), 0.05);
     let mut camera =

@@ -1,5 +1,4 @@
-//! `columns`: a colonnade in stone. Shafts cast long shadows across steps, and the corners under the
-//! beams and around the bases are what ambient occlusion is for.
+//! `columns`: a stone colonnade that shows long shadows and ambient occlusion in corners.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
@@ -44,7 +43,7 @@ pub(super) fn scene() -> Scene {
     scene
 }
 
-/// Half the length of the floor along z.
+/// Returns half the length of the floor along z.
 fn half_length() -> f64 {
     f64::from(PAIRS - 1) * SPACING_M / 2.0 + 1.0
 }
@@ -56,7 +55,7 @@ fn put_box(scene: &mut Scene, name: &str, material: MaterialId, min: DVec3, max:
     scene.add_instance(name, mesh, material, at);
 }
 
-/// Three steps, each 12 cm high and 35 cm deep, up to the floor.
+/// Adds three steps, each 12 cm high and 35 cm deep, up to the floor.
 fn steps(scene: &mut Scene, stone: MaterialId) {
     for step in 0..3_u32 {
         let reach = 0.35 * f64::from(2 - step);
@@ -96,7 +95,7 @@ fn colonnade(scene: &mut Scene, stone: MaterialId, dark: MaterialId) {
     }
 }
 
-/// A shaft with a rounded base and capital and a slight swelling, from y = 0 to the abacus.
+/// Returns a shaft with a rounded base and capital and a slight swelling, from y = 0 to the abacus.
 fn shaft() -> Mesh {
     let height = (COLUMN_M - 0.24) as f32;
     // Half circles from (r, top) to (r, bottom): mouldings.
@@ -135,7 +134,7 @@ fn shaft() -> Mesh {
     mesh
 }
 
-/// Things on the floor that throw and catch shadows.
+/// Adds objects on the floor that cast and receive shadows.
 fn props(scene: &mut Scene) {
     let bronze = Material::metal("bronze", Vec3::new(0.714, 0.428, 0.181), 0.35);
     let bronze = scene.add_material(bronze);

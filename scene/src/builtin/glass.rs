@@ -28,7 +28,7 @@ pub(super) fn scene() -> Scene {
     scene
 }
 
-/// Clear glass of this index and perceptual roughness; a body this thick, or a wall.
+/// Returns clear glass with an index of refraction and a perceptual roughness; thin-walled without `volume`.
 fn glass(name: &str, ior: f32, roughness: f32, volume: Option<Volume>) -> Material {
     Material {
         ior,
@@ -41,14 +41,14 @@ fn ball_of(thickness: f32) -> Volume {
     Volume { thickness, ..Volume::default() }
 }
 
-/// Where the object in `column` of 5 and a row stands, `y` meters up.
+/// Returns the transform of the object in `column` (0 to 4) of a row, `y` meters above the ground.
 fn stand(column: usize, z: f64, y: f64) -> DMat4 {
     DMat4::from_translation(DVec3::new((column as f64 - 2.0) * SPACING_M, y, z))
 }
 
 fn surroundings(scene: &mut Scene) {
     ground::checkered(scene, [Vec3::splat(0.08), Vec3::splat(0.5)], 0.7, 1.0);
-    // Stripes to see refraction by.
+    // Stripes that make refraction visible.
     let stripe = scene.add_mesh(cuboid(Vec3::new(0.2, 0.8, 0.05)));
     for (column, hex) in
         [0xc8_2a_2a, 0xe8_e4_dc, 0xd8_a8_30, 0x1c_8a_3c, 0xe8_e4_dc, 0x1a_4c_b4, 0x80_30_a0, 0xe8_e4_dc]

@@ -1,4 +1,4 @@
-//! What the objects of a built-in scene stand on.
+//! Ground planes of the built-in scenes.
 
 use glam::{DMat4, Vec2, Vec3};
 
@@ -8,11 +8,11 @@ use crate::material::Material;
 use crate::scene::Scene;
 use crate::texture::{Sampler, TextureRole, TextureSlot, UvTransform};
 
-/// Width of the ground: at its edge the squares are too flat to be told apart, and the sky goes on with the mean of both
-/// colors.
+/// Width of the ground. At its edge the squares are too small to distinguish, and the sky continues with their mean
+/// color.
 const WIDTH_M: f32 = 96.0;
 
-/// Adds checkered ground; the pattern, two by two squares of two linear Rec.709 colors, is `tile_m` wide.
+/// Adds checkered ground. The pattern repeats every `tile_m` and has two by two squares of two linear Rec.709 colors.
 pub(super) fn checkered(scene: &mut Scene, colors: [Vec3; 2], roughness: f32, tile_m: f32) {
     let [dark, light] = colors;
     let checker = pattern::checker("checker", 64, dark, light);

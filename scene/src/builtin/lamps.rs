@@ -1,5 +1,5 @@
-//! `lamps`: a yard at night with as many lamps of limited range as are asked for, two thirds of them bulbs, the others spots
-//! that shine down.
+//! `lamps`: a yard at night with punctual lights of limited range, two thirds point lights and one third spot lights
+//! that point down.
 
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 
@@ -9,9 +9,9 @@ use crate::light::{Light, LightKind};
 use crate::material::{EmissiveUnit, Material};
 use crate::scene::Scene;
 
-/// Lamps where no number is said.
+/// Default number of lights.
 pub(super) const COUNT: u32 = 1000;
-/// The most that there may be.
+/// Maximum number of lights.
 pub(super) const MOST: u32 = 65_536;
 const BULB_M: f32 = 0.05;
 const CANDELA: f32 = 12.0;
@@ -20,7 +20,7 @@ const SPOT_RANGE_M: f32 = 3.5;
 const COLORS: [[f32; 3]; 6] =
     [[1.0, 0.55, 0.25], [1.0, 0.25, 0.15], [0.9, 0.9, 0.4], [0.25, 0.8, 0.45], [0.25, 0.5, 1.0], [0.75, 0.35, 1.0]];
 
-/// The yard narrows toward the camera, as the view does: from 6 m to 26 m to either side, over 40 m.
+/// Returns the scene. The yard widens away from the camera like its view: from 6 m to 26 m on either side, over 40 m.
 pub(super) fn scene(count: u32) -> Scene {
     let mut scene = Scene { name: "lamps".into(), ..Scene::default() };
     let floor = Material::dielectric("floor", Vec3::splat(0.32), 0.45);
@@ -63,19 +63,20 @@ pub(super) fn scene(count: u32) -> Scene {
     scene
 }
 
-/// Numbers spread evenly over a square, 0…1 (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018).
+/// Returns a point of a low-discrepancy sequence over the unit square (Roberts, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", 2018).
 fn spread(number: u32) -> DVec2 {
     let ratio = 1.324_717_957_244_746;
     (f64::from(number) * DVec2::new(1.0 / ratio, 1.0 / (ratio * ratio))).fract()
 }
 
-/// A place in the yard. The square root makes far rows, which are wider, as dense as near ones.
+/// Returns a position in the yard. The square root gives the wide far rows the density of the near ones.
 fn place(spread: DVec2, height_m: f64) -> DVec3 {
     let depth = (spread.y * (1.0 - 0.053) + 0.053).sqrt();
     DVec3::new((2.0 * spread.x - 1.0) * 26.0 * depth, height_m, 12.0 - 52.0 * depth)
 }
 
-/// Blocks of stone, upright, of different heights.
+/// Adds upright stone blocks of different heights.
 fn blocks(scene: &mut Scene) {
     let stone = Material::dielectric("stone", Vec3::new(0.50, 0.47, 0.42), 0.8);
     let stone = scene.add_material(stone);

@@ -1,7 +1,7 @@
-//! `lobes`: what a material may have beside the metal-rough base, a row of balls each.
+//! `lobes`: extensions of the metallic-roughness model, a row of balls for each.
 //!
-//! From back to front: index of refraction; specular factor and tint; sheen by roughness; anisotropy by strength, then by
-//! direction; clear coat by roughness. Left to right the named quantity grows.
+//! From back to front: index of refraction; specular factor and tint; sheen by roughness; anisotropy by strength, then
+//! by direction; clear coat by roughness. The quantity grows from left to right.
 
 use glam::{DMat4, DVec3, Vec3};
 
@@ -33,7 +33,7 @@ pub(super) fn scene() -> Scene {
     scene
 }
 
-/// 0 in the first column, 1 in the last.
+/// Returns 0 for the first column and 1 for the last.
 fn share(column: u32) -> f32 {
     column as f32 / (COLUMNS - 1) as f32
 }
@@ -43,7 +43,7 @@ fn ior(column: u32) -> Material {
     Material { ior, ..Material::dielectric(&format!("index {ior:.1}"), linear_from_hex(0x80_20_28), 0.15) }
 }
 
-/// The factor grows to 1, then the tint turns.
+/// Returns a material whose specular factor grows to 1, after which the specular color changes.
 fn specular(column: u32) -> Material {
     let (factor, color) = match column {
         0..=2 => (column as f32 / 2.0, Vec3::ONE),
@@ -70,7 +70,7 @@ fn brushed(name: &str, strength: f32, rotation_rad: f32) -> Material {
 }
 
 fn anisotropy(column: u32) -> Material {
-    // Importers leave a strength of 0 out; this scene shows that it changes nothing.
+    // Importers skip a strength of 0; this scene shows that it has no effect.
     let strength = share(column);
     brushed(&format!("anisotropy {strength:.1}"), strength, 0.0)
 }

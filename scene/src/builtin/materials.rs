@@ -1,4 +1,4 @@
-//! `materials`: one object for each thing a material can say.
+//! `materials`: one object for each material feature.
 //!
 //! Back row: metals by measured reflectance. Middle row: dielectrics. Front row: textures, normal
 //! map, emission, cut-outs, blending, double sides, vertex colors, unlit.
@@ -33,7 +33,7 @@ pub(super) fn scene() -> Scene {
     scene
 }
 
-/// Where the object in `column` of 8 and a row stands, `y` meters up.
+/// Returns the transform of the object in `column` (0 to 7) of a row, `y` meters above the ground.
 fn stand(column: u32, z: f64, y: f64) -> DMat4 {
     let x = (f64::from(column) - 3.5) * SPACING_M;
     DMat4::from_translation(DVec3::new(x, y, z))
@@ -125,7 +125,7 @@ fn transparent(scene: &mut Scene) {
     });
     scene.add_instance("alpha mask", pane, cut_out, stand(3, 1.2, 0.45) * upright);
 
-    // Two panes behind each other: blending has an order.
+    // Two panes behind each other, where blending order shows.
     for (color, z, x) in [(0x2a_6a_d0, 1.05, -0.12), (0xd0_48_2a, 1.35, 0.12)] {
         let glass = scene.add_material(Material {
             base_color: linear_from_hex(color).extend(0.4),
@@ -147,7 +147,7 @@ fn special(scene: &mut Scene) {
     scene.add_instance("double sided", tube, both, lying);
 
     let mut painted = torus(0.32, 0.14, 64, 32);
-    // A rainbow around the axis: red, green and blue a third of a turn apart.
+    // A rainbow around the axis: red, green and blue are a third of a turn apart.
     painted.colors = painted
         .uv0
         .iter()
@@ -164,13 +164,13 @@ fn special(scene: &mut Scene) {
     scene.add_instance("vertex colors", painted, white, stand(6, 1.2, 0.4) * lean);
 
     let ball = scene.add_mesh(sphere(0.4, 48, 24));
-    // Unlit colors are luminance: as bright as white paper in the sun.
+    // Unlit colors are luminances: as bright as white paper in the sun.
     let unlit =
         scene.add_material(Material { unlit: true, ..Material::dielectric("unlit", Vec3::new(0.8, 0.2, 0.6), 1.0) });
     scene.add_instance("unlit", ball, unlit, stand(7, 1.2, 0.4));
 }
 
-/// A cylinder without its caps.
+/// Returns a cylinder without caps.
 fn open_tube() -> Mesh {
     let mut mesh = cylinder(0.35, 0.4, 48);
     mesh.name = "open tube".into();

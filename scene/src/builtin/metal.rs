@@ -5,9 +5,9 @@ use glam::Vec3;
 /// A metal, described by its reflectance at normal incidence.
 #[derive(Clone, Copy, Debug)]
 pub struct Metal {
-    /// Its name in English, lower case.
+    /// English name, lower case.
     pub name: &'static str,
-    /// Reflectance at normal incidence, linear Rec.709, clipped to 1.
+    /// Reflectance at normal incidence, linear Rec.709, clamped to 1.
     pub f0: Vec3,
 }
 
@@ -15,8 +15,8 @@ const fn metal(name: &'static str, r: f32, g: f32, b: f32) -> Metal {
     Metal { name, f0: Vec3::new(r, g, b) }
 }
 
-/// Reflectance of eight metals, from complex refractive indices, integrated over the spectrum (Akenine-Möller et al., "Real-Time
-/// Rendering", 4th edition, 2018, table 9.2).
+/// Reflectances of eight metals, integrated over the spectrum from complex refractive indices (Akenine-Möller et al.,
+/// "Real-Time Rendering", 4th edition, 2018, table 9.2).
 pub const METALS: [Metal; 8] = [
     metal("gold", 1.000, 0.782, 0.344),
     metal("silver", 0.972, 0.960, 0.915),

@@ -1,7 +1,7 @@
-//! `optics`: what light does in thin films, prisms and leaves, a row each.
+//! `optics`: thin films, dispersion and diffuse transmission, a row for each.
 //!
-//! From back to front: a sheet by diffuse transmission; a thin film on a black dielectric by thickness, then on titanium by
-//! index of refraction; glass by dispersion. Left to right the named quantity grows.
+//! From back to front: a sheet by diffuse transmission; a thin film on a black dielectric by thickness, then on
+//! titanium by index of refraction; glass by dispersion. The quantity grows from left to right.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
@@ -23,7 +23,7 @@ pub(super) fn scene() -> Scene {
     let ball = scene.add_mesh(sphere(RADIUS_M, 64, 32));
     let sheet = scene.add_mesh(plane(Vec2::splat(2.0 * RADIUS_M), 1, Vec2::ONE));
     let level = DMat4::IDENTITY;
-    // Upright, the back toward the sky behind.
+    // Upright, with the back toward the sky behind.
     let upright = DMat4::from_rotation_x(1.2);
     let rows: [(MeshId, DMat4, fn(u32) -> Material); 4] =
         [(sheet, upright, leaf), (ball, level, film), (ball, level, film_on_metal), (ball, level, glass)];
@@ -42,7 +42,7 @@ pub(super) fn scene() -> Scene {
     scene
 }
 
-/// 0 in the first column, 1 in the last.
+/// Returns 0 for the first column and 1 for the last.
 fn share(column: u32) -> f32 {
     column as f32 / (COLUMNS - 1) as f32
 }
@@ -61,7 +61,7 @@ fn film_on_metal(column: u32) -> Material {
     Material { iridescence: Some(iridescence), ..Material::metal(&format!("film of index {ior:.1}"), titanium.f0, 0.2) }
 }
 
-/// Glass of dispersion 0 to 5, to make it visible: diamond has 0.36.
+/// Returns glass of dispersion 0 to 5. Exaggerated for visibility: diamond has 0.36.
 fn glass(column: u32) -> Material {
     let dispersion = 5.0 * share(column);
     let volume = Some(Volume { thickness: 2.0 * RADIUS_M, ..Volume::default() });
@@ -79,7 +79,7 @@ fn leaf(column: u32) -> Material {
     let scattered = DiffuseTransmission { factor, color, ..DiffuseTransmission::default() };
     let name = format!("diffuse transmission {factor:.1}");
     Material {
-        // Importers leave a factor of 0 out; this scene shows that it changes nothing.
+        // Importers skip a factor of 0; this scene shows that it has no effect.
         diffuse_transmission: Some(scattered),
         double_sided: true,
         ..Material::dielectric(&name, linear_from_hex(0x30_80_28), 0.6)

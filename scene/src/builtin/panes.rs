@@ -1,6 +1,6 @@
-//! `panes`: blended surfaces that no order of objects draws right, on a checkered ground.
+//! `panes`: intersecting blended surfaces that no object order draws correctly, on checkered ground.
 //!
-//! Left: colored panes that cross each other in one upright axis. Right: a ball within a ball, both seen through.
+//! Left: colored panes that intersect in one vertical axis. Right: a transparent ball within a transparent ball.
 
 use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -11,12 +11,12 @@ use crate::geometry::{plane, sphere};
 use crate::material::{AlphaMode, Material};
 use crate::scene::Scene;
 
-/// How many panes cross each other in `panes`.
+/// Default number of intersecting panes.
 pub(super) const COUNT: u32 = 5;
-/// The most that `panes:N` takes.
+/// Maximum number of panes in `panes:N`.
 pub(super) const MOST: u32 = 64;
 
-/// Hues far apart, which panes take in turn.
+/// Contrasting hues, used in turn.
 const COLORS: [Vec3; 4] =
     [Vec3::new(0.8, 0.06, 0.05), Vec3::new(0.05, 0.55, 0.1), Vec3::new(0.06, 0.12, 0.8), Vec3::new(0.8, 0.6, 0.05)];
 
@@ -27,7 +27,7 @@ pub(super) fn scene(count: u32) -> Scene {
     for number in 0..count {
         let albedo = COLORS[number as usize % COLORS.len()];
         let material = scene.add_material(clear("pane", albedo, 0.55));
-        // None is seen edge-on, and they lean as planks of a tent do.
+        // No pane is seen edge-on, and all lean inward like the sides of a tent.
         let about = PI * (f64::from(number) + 0.35) / f64::from(count.max(1));
         let turned = DQuat::from_rotation_y(about) * DQuat::from_rotation_x(FRAC_PI_2);
         let place = DMat4::from_rotation_translation(turned, DVec3::new(-1.05, 0.75, 0.0));
@@ -46,7 +46,7 @@ pub(super) fn scene(count: u32) -> Scene {
     scene
 }
 
-/// A double-sided blended surface.
+/// Returns a double-sided blended material.
 fn clear(name: &str, albedo: Vec3, alpha: f32) -> Material {
     let base_color = albedo.extend(alpha);
     let own = Material::dielectric(name, albedo, 0.4);

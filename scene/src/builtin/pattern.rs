@@ -1,4 +1,4 @@
-//! Pictures made in code, for the textures of built-in scenes. All tile.
+//! Procedural images for the textures of built-in scenes. All tile.
 
 use std::f32::consts::TAU;
 
@@ -7,8 +7,8 @@ use glam::{Vec2, Vec3, Vec4};
 use crate::color::srgb_from_linear;
 use crate::texture::Image;
 
-/// A picture of `side` × `side` texels from a function of the texel center in 0…1, whose channels in
-/// 0…1 are stored as they are.
+/// Returns an image of `side` × `side` texels. `texel` maps a texel center in 0…1 to channels in 0…1, stored without
+/// conversion.
 fn image(name: &str, side: u32, texel: impl Fn(Vec2) -> Vec4) -> Image {
     let mut rgba8 = Vec::with_capacity((side * side * 4) as usize);
     for y in 0..side {
@@ -21,12 +21,12 @@ fn image(name: &str, side: u32, texel: impl Fn(Vec2) -> Vec4) -> Image {
     Image::from_rgba8(name, side, side, rgba8)
 }
 
-/// Linear color and alpha as sRGB codes in 0…1.
+/// Encodes a linear color as sRGB; all values are in 0…1, alpha is unchanged.
 fn encoded(linear: Vec3, alpha: f32) -> Vec4 {
     Vec3::from_array(linear.to_array().map(srgb_from_linear)).extend(alpha)
 }
 
-/// Two by two squares of linear Rec.709 colors; role `Color`.
+/// Returns a checkerboard of two by two squares in linear Rec.709 colors; role `Color`.
 pub(super) fn checker(name: &str, side: u32, dark: Vec3, light: Vec3) -> Image {
     image(name, side, |uv| {
         let odd = (uv.x < 0.5) != (uv.y < 0.5);
@@ -34,8 +34,8 @@ pub(super) fn checker(name: &str, side: u32, dark: Vec3, light: Vec3) -> Image {
     })
 }
 
-/// Squares that alternate between two roughnesses, one of them metal; role `Linear`
-/// (G roughness, B metallic).
+/// Returns squares that alternate between two roughnesses, one of them metallic; role `Linear` (G roughness, B
+/// metallic).
 pub(super) fn inlay(name: &str, side: u32, metal_roughness: f32, rest_roughness: f32) -> Image {
     image(name, side, |uv| {
         let cell = (uv * 2.0).fract() - 0.5;
@@ -45,21 +45,21 @@ pub(super) fn inlay(name: &str, side: u32, metal_roughness: f32, rest_roughness:
     })
 }
 
-/// The height of a field of round bumps, 0…1, at a point of a picture that holds `count` × `count`.
+/// Returns the height (0…1) of a field of `count` × `count` round bumps.
 fn bumps_height(uv: Vec2, count: f32) -> f32 {
     let cell = (uv * count).fract() - 0.5;
     let d = cell.length() / 0.42;
     if d < 1.0 { (1.0 - d * d).sqrt() } else { 0.0 }
 }
 
-/// `count` × `count` hemispherical bumps as tangent-space normals, green up; role `Normal`.
-/// `relief` is the height of a bump as a share of its radius.
+/// Returns `count` × `count` hemispherical bumps as tangent-space normals, green up; role `Normal`. `relief` is the
+/// height of a bump relative to its radius.
 pub(super) fn bumps(name: &str, side: u32, count: f32, relief: f32) -> Image {
     image(name, side, |uv| {
         let cell = (uv * count).fract() - 0.5;
         let d = cell / 0.42;
         let normal = if d.length_squared() < 0.98 {
-            // The slope of √(1 − d²) is −d/√(1 − d²); v grows downwards, green upwards.
+            // The slope of √(1 − d²) is −d/√(1 − d²); v grows downward, green upward.
             let slope = d * (relief / (1.0 - d.length_squared()).sqrt());
             Vec3::new(slope.x, -slope.y, 1.0).normalize()
         } else {
@@ -69,7 +69,7 @@ pub(super) fn bumps(name: &str, side: u32, count: f32, relief: f32) -> Image {
     })
 }
 
-/// Occlusion between the same bumps; role `Linear` (R).
+/// Returns the ambient occlusion between the bumps of [`bumps`]; role `Linear` (R).
 pub(super) fn bumps_occlusion(name: &str, side: u32, count: f32) -> Image {
     image(name, side, |uv| {
         let open = 0.35 + 0.65 * bumps_height(uv, count);
@@ -77,12 +77,12 @@ pub(super) fn bumps_occlusion(name: &str, side: u32, count: f32) -> Image {
     })
 }
 
-/// A lattice of leaves: green where alpha is 1, nothing where it is 0, with an edge a few texels
-/// soft for filtering; role `Color`.
+/// Returns a lattice of leaves: alpha is 1 inside leaves and 0 outside, with an edge a few texels soft for filtering;
+/// role `Color`.
 pub(super) fn leaves(name: &str, side: u32) -> Image {
     image(name, side, |uv| {
         let cell = (uv * 2.0).fract() - 0.5;
-        // A leaf is the overlap of two discs that lie apart along its diagonal.
+        // A leaf is the intersection of two discs, offset along its diagonal.
         let offset = Vec2::new(0.18, 0.18);
         let d = (cell - offset).length().max((cell + offset).length());
         let alpha = ((0.50 - d) * side as f32 / 8.0 + 0.5).clamp(0.0, 1.0);
@@ -92,7 +92,7 @@ pub(super) fn leaves(name: &str, side: u32) -> Image {
     })
 }
 
-/// Bright lines of a grid on black; role `Color`.
+/// Returns a grid of bright lines on black; role `Color`.
 pub(super) fn grid_lines(name: &str, side: u32, color: Vec3) -> Image {
     image(name, side, |uv| {
         let wave = (uv * TAU * 4.0).to_array().map(f32::cos);

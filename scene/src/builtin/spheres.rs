@@ -1,4 +1,4 @@
-//! `spheres`: metallic by row, roughness by column.
+//! `spheres`: balls by metallic (rows) and roughness (columns).
 
 use glam::{DMat4, DVec3, Vec3};
 
@@ -12,7 +12,7 @@ const COLUMNS: u32 = 7;
 const ROWS: u32 = 5;
 const RADIUS_M: f32 = 0.45;
 
-/// Roughness grows from left to right, 0 to 1, metallic from back to front, 0 to 1.
+/// Returns the scene. Roughness grows from 0 to 1 from left to right, metallic from 0 to 1 from back to front.
 pub(super) fn scene() -> Scene {
     let mut scene = Scene { name: "spheres".into(), ..Scene::default() };
     let ball = scene.add_mesh(sphere(RADIUS_M, 64, 32));

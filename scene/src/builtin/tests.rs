@@ -1,4 +1,4 @@
-//! The built-in scenes keep every promise and show what they are for.
+//! The built-in scenes are valid and show what they are made for.
 
 use crate::material::{Lobe, Lobes};
 
@@ -16,7 +16,7 @@ fn every_built_in_scene_is_sound() {
         assert!(scene.warnings.is_empty());
         assert!(scene.triangle_count() > 1000, "{name}");
         assert!(!scene.cameras.is_empty());
-        // Ground goes on to the horizon, and an orbit is about what stands on it.
+        // The ground continues to the horizon; an orbit frames the objects on it.
         let [whole, above] = [scene.bounds(), scene.bounds_above_ground()].map(|bounds| bounds.radius());
         assert_eq!(scene.ground_albedo.is_some(), above < 0.5 * whole, "{name}: {above} m of {whole} m");
         for mesh in &scene.meshes {
@@ -27,7 +27,7 @@ fn every_built_in_scene_is_sound() {
                 assert!(area > 1e-8, "{name} {} has a triangle without area", mesh.name);
             }
         }
-        // Everything but the ground is in sight of the first camera.
+        // The first camera sees everything but the ground.
         let lists = crate::DrawLists::for_camera(&scene, &scene.cameras[0], 16.0 / 9.0);
         assert_eq!(lists.culled, 0, "{name}");
     }
@@ -103,7 +103,7 @@ fn there_are_as_many_panes_as_asked_for() {
     }
 }
 
-/// Between them, the scenes show every lobe of glTF; those that tell of the base alone call for none.
+/// Together, the scenes use every glTF lobe; those for the base alone use none.
 #[test]
 fn lobes_and_glass_call_for_what_they_show() {
     let called_for = |name: &str| builtin(name).expect(name).lobes();

@@ -1,4 +1,4 @@
-//! The camera as a user writes it: `NAME`, `orbit`, or `EX,EY,EZ:TX,TY,TZ:FOVY`.
+//! Camera choice as a user writes it: `NAME`, `orbit`, or `EX,EY,EZ:TX,TY,TZ:FOVY`.
 
 use std::str::FromStr;
 
@@ -10,20 +10,20 @@ use super::projection::Projection;
 use crate::error::{CameraTextError, LookAtError, SceneError, one_line};
 use crate::scene::Scene;
 
-/// Which camera a user asked for.
+/// Selection of a camera by a user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraChoice {
-    /// A camera of the scene, by name.
+    /// Camera of the scene with this name.
     Named(String),
-    /// [`orbit`]: the whole scene from the front right, slightly above.
+    /// [`orbit`]: shows the whole scene from the front right, slightly above.
     Orbit,
     /// Eye, target and vertical field of view.
     LookAt {
         /// Position of the camera, in meters.
         eye: DVec3,
-        /// The point in the middle of the picture, in meters.
+        /// Point in the center of the image, in meters.
         target: DVec3,
-        /// Full vertical field of view in degrees, in 0…180 exclusive.
+        /// Full vertical field of view in degrees, between 0 and 180, both excluded.
         fov_y_deg: f64,
     },
 }
@@ -31,7 +31,7 @@ pub enum CameraChoice {
 impl FromStr for CameraChoice {
     type Err = SceneError;
 
-    /// A text that holds both `:` and `,` is taken for coordinates, anything else for a name.
+    /// Parses a choice. Text with both `:` and `,` is read as coordinates, other text as a name.
     fn from_str(text: &str) -> Result<Self, SceneError> {
         let error = |reason| SceneError::Camera { text: text.into(), reason };
         if text == "orbit" {
@@ -61,11 +61,11 @@ impl FromStr for CameraChoice {
 }
 
 impl CameraChoice {
-    /// The camera itself, for a picture of `width_over_height`.
+    /// Returns the camera for an image of aspect ratio `width_over_height`.
     ///
     /// # Errors
     ///
-    /// When the scene has no camera of the name; the message lists those it has.
+    /// Fails if the scene has no camera of this name; the message lists its cameras.
     pub fn resolve(&self, scene: &Scene, width_over_height: f64) -> Result<Camera, SceneError> {
         match self {
             Self::Orbit => Ok(orbit(&scene.bounds_above_ground(), width_over_height)),
@@ -76,7 +76,7 @@ impl CameraChoice {
                 }
             }),
             Self::LookAt { eye, target, fov_y_deg } => {
-                // Close enough for a desk, far enough for depth: a hundredth of the distance.
+                // A hundredth of the distance: suits desktop-sized scenes and keeps depth precision in large ones.
                 let near_m = (eye.distance(*target) * 0.01).clamp(1e-4, 0.1);
                 let projection = Projection::perspective(fov_y_deg.to_radians(), near_m);
                 Camera::look_at(*eye, *target, DVec3::Y, projection).map_err(|reason| SceneError::Camera {

@@ -1,4 +1,4 @@
-//! A camera that shows a whole scene from the front right, slightly above.
+//! Orbit camera: shows a whole scene from the front right, slightly above.
 
 use glam::DVec3;
 
@@ -6,20 +6,19 @@ use super::definition::{Camera, rotation_towards};
 use super::projection::Projection;
 use crate::bounds::Aabb;
 
-/// Around the y axis from +z towards +x, in degrees: from the front right.
+/// Azimuth in degrees, around the y axis from +z toward +x: from the front right.
 pub const ORBIT_AZIMUTH_DEG: f64 = 30.0;
-/// Above the horizon, in degrees.
+/// Elevation above the horizon, in degrees.
 pub const ORBIT_ELEVATION_DEG: f64 = 18.0;
 /// Vertical field of view in degrees.
 const FOV_Y_DEG: f64 = 40.0;
-/// Room left around the box, as a share of the distance.
+/// Margin around the box, as a factor on the distance.
 const MARGIN: f64 = 1.06;
 
-/// The three-quarter view from which the eight corners of `bounds` just fit a picture of
-/// `width_over_height`, wherever they are and whatever their size. Depends on its arguments alone.
+/// Returns the three-quarter view in which the eight corners of `bounds` just fit an image of aspect ratio
+/// `width_over_height`. Independent of the position and scale of the bounds, and deterministic.
 ///
-/// An empty or single-point box is treated as one of 1 mm half extent, so that the result is always
-/// a camera.
+/// An empty or single-point box is treated as a box of 1 mm half extent, so that a camera always exists.
 #[must_use]
 pub fn orbit(bounds: &Aabb, width_over_height: f64) -> Camera {
     let center = bounds.center();
@@ -38,7 +37,7 @@ pub fn orbit(bounds: &Aabb, width_over_height: f64) -> Camera {
         projection: Projection::perspective(fov_y_rad, 1.0),
     };
     let view_from_world = camera.world_from_view.inverse();
-    // A corner at (x, y, z) from the center, z towards the eye, fits when |x| ≤ (d − z) tan.
+    // A corner at (x, y, z) from the center, z toward the eye, is visible if |x| ≤ (d − z) tan.
     let distance = bounds
         .corners()
         .into_iter()
@@ -51,8 +50,8 @@ pub fn orbit(bounds: &Aabb, width_over_height: f64) -> Camera {
     camera
 }
 
-/// A near plane in meters that cuts nothing of `bounds` seen from `eye` outside, and that is small
-/// enough to look around inside.
+/// Returns a near-plane distance in meters that clips nothing of `bounds` seen from an `eye` outside, and is small
+/// enough for moving inside.
 fn near_for(bounds: &Aabb, eye: DVec3) -> f64 {
     let nearest = eye.clamp(bounds.min, bounds.max).distance(eye);
     (nearest * 0.5).max(bounds.radius() * 1e-3)

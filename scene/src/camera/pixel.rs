@@ -1,38 +1,39 @@
-//! How large a pixel is in the world.
+//! World-space size of a pixel.
 
 use super::definition::Camera;
 use super::projection::Projection;
 use crate::bounds::Aabb;
 use glam::{DVec2, DVec3};
 
-/// How large a pixel of a camera's picture is in the world.
+/// World-space size of a pixel in a camera's image.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelSize {
     eye: DVec3,
     forward: DVec3,
     near_m: f64,
-    /// In meters: at a distance of a meter, and where the picture is stretched most; or, of a parallel projection, anywhere.
+    /// Minimum pixel size in meters: for a perspective, at a distance of one meter in the most stretched corner; for a
+    /// parallel projection, anywhere.
     least_m: f64,
     is_parallel: bool,
 }
 
 impl PixelSize {
-    /// That of a picture of `size_px`.
+    /// Computes the pixel size of an image of `size_px`.
     #[must_use]
     pub fn new(camera: &Camera, size_px: [u32; 2]) -> Self {
         let [width, height] = size_px.map(|side| f64::from(side.max(1)));
         let clip = camera.clip_from_view(width / height);
-        // Half the picture in the world: at a distance of one meter, or everywhere.
+        // Half the image in world units: at a distance of one meter, or anywhere for a parallel projection.
         let half = DVec2::new(1.0 / clip.x_axis.x, 1.0 / clip.y_axis.y);
         let at_one = 2.0 * (half / DVec2::new(width, height)).min_element();
         let is_parallel = matches!(camera.projection, Projection::Orthographic { .. });
-        // In the corners what points outward is seen longer.
+        // Perspective stretches radial lengths in the corners of the image.
         let stretched = if is_parallel { 1.0 } else { (1.0 + half.length_squared()).sqrt() };
         let (forward, near_m) = (camera.forward(), camera.projection.near_m());
         Self { eye: camera.eye, forward, near_m, least_m: at_one / stretched, is_parallel }
     }
 
-    /// The length in meters that is nowhere in `bounds` seen longer than a pixel, whichever way it points.
+    /// Returns a length in meters that covers at most one pixel anywhere in `bounds`, in any direction.
     #[must_use]
     pub fn least_m(&self, bounds: &Aabb) -> f64 {
         if self.is_parallel {
@@ -49,7 +50,7 @@ mod tests {
     use super::*;
     use glam::DMat4;
 
-    /// Against short ways at many places of a box, each as the picture shows it.
+    /// Compares with short segments at many positions of a box, projected to the image.
     #[test]
     fn nothing_of_that_length_is_longer_than_a_pixel() {
         let size_px = [320, 180];

@@ -1,15 +1,15 @@
-//! Reversed-Z projections: depth is 1 at the near plane and falls to 0, which spreads the precision
-//! of f32 evenly over distance.
+//! Reversed-Z projections: depth is 1 at the near plane and decreases to 0, which distributes f32 precision evenly over
+//! distance.
 
 use glam::dcamera::rh::proj::directx::{orthographic, perspective, perspective_infinite_reverse};
 use glam::{DMat4, DVec4};
 
-/// Projection of view space onto the picture.
+/// Projection from view space to the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Perspective projection.
     Perspective {
-        /// Full vertical field of view in radians, in 0…π exclusive.
+        /// Full vertical field of view in radians, between 0 and π, both excluded.
         fov_y_rad: f64,
         /// Distance of the near plane in meters, above 0.
         near_m: f64,
@@ -18,8 +18,8 @@ pub enum Projection {
     },
     /// Orthographic (parallel) projection.
     Orthographic {
-        /// Half the width of the view volume in meters, above 0; `None` follows from the height and the
-        /// picture's shape.
+        /// Half the width of the view volume in meters, above 0; `None` derives it from the height and the aspect
+        /// ratio.
         half_width_m: Option<f64>,
         /// Half the height of the view volume in meters, above 0.
         half_height_m: f64,
@@ -31,13 +31,13 @@ pub enum Projection {
 }
 
 impl Projection {
-    /// A perspective with the far plane at infinity.
+    /// Returns a perspective projection with the far plane at infinity.
     #[must_use]
     pub fn perspective(fov_y_rad: f64, near_m: f64) -> Self {
         Self::Perspective { fov_y_rad, near_m, far_m: None }
     }
 
-    /// Distance of the near plane in meters.
+    /// Returns the near-plane distance in meters.
     #[must_use]
     pub fn near_m(&self) -> f64 {
         match *self {
@@ -45,7 +45,7 @@ impl Projection {
         }
     }
 
-    /// Distance of the far plane in meters, if there is one.
+    /// Returns the far-plane distance in meters, or `None` for infinity.
     #[must_use]
     pub fn far_m(&self) -> Option<f64> {
         match *self {
@@ -54,8 +54,8 @@ impl Projection {
         }
     }
 
-    /// The same for a picture of `width_over_height` without stretching what is seen: a parallel projection of another
-    /// shape shows more on the sides where the picture has room (glTF 2.0, section 3.10.1, asks not to stretch).
+    /// Returns this projection adapted to an image of aspect ratio `width_over_height` without stretching. A parallel
+    /// projection of another aspect ratio is enlarged in one direction (glTF 2.0, section 3.10.1, forbids stretching).
     #[must_use]
     pub fn unstretched(self, width_over_height: f64) -> Self {
         match self {
@@ -67,10 +67,10 @@ impl Projection {
         }
     }
 
-    /// Clip from view for a picture of `width_over_height`, in wgpu's clip space (y up, depth
-    /// 0…1), reversed.
+    /// Returns the clip-from-view matrix for an image of aspect ratio `width_over_height`, in wgpu's clip space (y up,
+    /// depth 0…1), reversed.
     ///
-    /// Finite projections are glam's with near and far exchanged, which reverses depth.
+    /// Finite projections use glam's with near and far exchanged, which reverses depth.
     #[must_use]
     pub fn clip_from_view(&self, width_over_height: f64) -> DMat4 {
         match *self {
@@ -87,11 +87,10 @@ impl Projection {
         }
     }
 
-    /// The planes of the view volume in view space, (normal, offset) with `normal · p + offset ≥ 0`
-    /// inside: left, right, bottom, top, near, and far if there is one. Unit normals.
+    /// Returns the planes of the view volume in view space: left, right, bottom, top, near, and far if it is finite.
+    /// Each is (unit normal, offset) with `normal · p + offset ≥ 0` inside.
     ///
-    /// Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes", 2001, for depth 0…1
-    /// reversed.
+    /// Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes", 2001, for reversed depth 0…1.
     #[must_use]
     pub fn planes(&self, width_over_height: f64) -> Vec<DVec4> {
         let rows = self.clip_from_view(width_over_height).transpose();

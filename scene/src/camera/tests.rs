@@ -1,4 +1,4 @@
-//! Cameras against hand-computed projections, and the hard cases of `look_at` and `orbit`.
+//! Cameras compared with hand-computed projections, and edge cases of `look_at` and `orbit`.
 
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
@@ -70,7 +70,7 @@ fn a_node_camera_ignores_the_nodes_scale() {
     assert!(Camera::of_node("flat", &DMat4::ZERO, projection).is_none());
 }
 
-/// The eight corners fit, and tightly: one of them uses nearly all the room the margin leaves.
+/// The eight corners fit tightly: one of them nearly reaches the margin.
 #[test]
 fn orbit_frames_boxes_of_every_shape_and_size() {
     let boxes = [
@@ -108,8 +108,8 @@ fn orbit_of_nothing_is_still_a_camera() {
     }
 }
 
-/// Accuracy at 10⁶ m: camera-relative f32 matrices place a point within 0.05 pixel of f64, plain
-/// f32 world coordinates do not (the control).
+/// Accuracy at 10⁶ m: camera-relative f32 matrices place a point within 0.05 pixel of f64, unlike f32 world coordinates
+/// (the control).
 #[test]
 fn far_from_the_origin_pixels_stay_put() {
     let far = DVec3::new(1e6, 20.0, -1e6);
@@ -143,7 +143,7 @@ fn exposure_follows_the_formula_and_stays_finite() {
         assert!(exposure.is_finite() && exposure > 0.0, "{ev}");
     }
     assert_eq!(exposure_from_ev100(30.0), exposure_from_ev100(24.0));
-    // f/16 at 1/125 s and ISO 100 is the sunny-16 rule: EV 15 less a hair.
+    // f/16 at 1/125 s and ISO 100 is the sunny-16 rule: slightly below EV 15.
     let sunny = ev100_from_settings(16.0, 1.0 / 125.0, 100.0).expect("positive settings");
     assert!((sunny - 14.966).abs() < 1e-3);
     assert_eq!(ev100_from_settings(0.0, 1.0, 100.0), None);

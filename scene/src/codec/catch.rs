@@ -1,11 +1,11 @@
-//! Panics of decoders from other crates, caught.
+//! Conversion of panics in third-party decoders to errors.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::error::CodecError;
 
-/// Runs `decode`; a panic inside becomes an error with its message. Only for calls into decoders of other crates, which
-/// promise not to panic but are given whatever a file holds. Nothing that they could leave half-changed outlives the call.
+/// Runs `decode` and converts a panic to an error with its message. Use it only for third-party decoders, which promise
+/// not to panic but receive untrusted input. No state that a panic could leave inconsistent outlives the call.
 pub(crate) fn catch_panic<T>(decode: impl FnOnce() -> Result<T, CodecError>) -> Result<T, CodecError> {
     catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(|panic| {
         let message =

@@ -1,61 +1,61 @@
-//! Why a picture file cannot be read or written.
+//! Errors of reading and writing image files.
 
 use super::kind::FileKind;
 use super::ktx::error::KtxError;
 
-/// Why a picture file cannot be decoded or encoded. The messages name no file: whoever reports one knows it.
+/// Error of decoding or encoding an image file. The message does not name the file; the caller adds its name.
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum CodecError {
-    /// There are no bytes.
+    /// The input is empty.
     #[error("the file is empty")]
     NoBytes,
-    /// The bytes begin like no format that is known.
-    #[error("it is no picture of a known format")]
+    /// The format is unknown.
+    #[error("its image format is unknown")]
     Unknown,
-    /// The format is known, but not read for this purpose, or not by this build of the crate.
-    #[error("{0} pictures are not read here")]
+    /// The format is known but not supported for this purpose or in this build.
+    #[error("{0} images are not supported here")]
     Kind(FileKind),
-    /// The picture has no texels.
+    /// The image has no texels.
     #[error("its size is {}×{}", size_texels[0], size_texels[1])]
     Empty {
         /// Width and height.
         size_texels: [u32; 2],
     },
-    /// There are more or fewer values than the size of a picture to encode asks for.
+    /// The number of values does not match the size of the image to encode.
     #[error("a picture of {}×{} texels has {expected} values, not {given}", size_texels[0], size_texels[1])]
     Values {
         /// Width and height.
         size_texels: [u32; 2],
-        /// Values that there should be.
+        /// Expected number of values.
         expected: usize,
-        /// Values that there are.
+        /// Actual number of values.
         given: usize,
     },
-    /// A number in the file is larger than what is accepted.
+    /// A number in the file exceeds its limit.
     #[error("{what} is {value}, over the limit of {limit}")]
     TooLarge {
-        /// Which number, with its unit.
+        /// Name of the number, with its unit.
         what: &'static str,
-        /// What it is.
+        /// Actual value.
         value: u64,
-        /// What it may be.
+        /// Maximum value.
         limit: u64,
     },
-    /// An OpenEXR file has no layer that is a picture.
+    /// No layer of an OpenEXR file has color channels.
     #[cfg(feature = "exr")]
     #[error("it has no layer with the channels R, G and B")]
     NoColor,
-    /// A Radiance file breaks its format's rules.
+    /// A Radiance file is invalid.
     #[error(transparent)]
     Hdr(#[from] HdrError),
-    /// A Khronos texture breaks its format's rules, or has another shape or other texels than its use asks for.
+    /// A Khronos texture is invalid, or its shape or texel format does not suit its use.
     #[error(transparent)]
     Ktx(#[from] KtxError),
-    /// An error of the decoder or encoder of another crate, or of the operating system.
+    /// An error of a third-party decoder or encoder, or of the operating system.
     #[error("{0}")]
     Other(Box<dyn std::error::Error + Send + Sync>),
-    /// The decoder of another crate panicked, with this message.
+    /// A third-party decoder panicked with this message.
     #[error("the decoder failed: {0}")]
     Panicked(String),
 }
@@ -67,33 +67,33 @@ impl std::fmt::Debug for CodecError {
 }
 
 impl CodecError {
-    /// An error of another crate.
+    /// Wraps an error of another crate.
     #[cfg(any(feature = "png", feature = "jpeg", feature = "webp", feature = "exr"))]
     pub(super) fn other(error: impl std::error::Error + Send + Sync + 'static) -> Self {
         Self::Other(Box::new(error))
     }
 }
 
-/// What a Radiance file gets wrong.
+/// Error in a Radiance file.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum HdrError {
-    /// The first line is another.
+    /// The signature in the first line is missing.
     #[error("it does not begin with #?RADIANCE")]
     Signature,
-    /// The texels are XYZ, or something unknown.
+    /// The texel format is XYZ or unknown.
     #[error("its FORMAT is not 32-bit_rle_rgbe")]
     Format,
-    /// The line with the size does not parse.
+    /// The line with the size is invalid.
     #[error("the line with its size is not of the form `-Y 256 +X 512`")]
     Size,
-    /// The file ends too soon.
+    /// The file is truncated.
     #[error("it ends early")]
     CutShort,
-    /// Runs of a row do not add up to the width.
+    /// The runs of a row do not add up to its width.
     #[error("a run in row {row} reaches beyond its end")]
     Run {
-        /// The row, from the top.
+        /// Row number, counted from the top.
         row: u32,
     },
 }

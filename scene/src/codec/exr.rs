@@ -1,4 +1,4 @@
-//! OpenEXR, by the `exr` crate.
+//! OpenEXR, decoded by the `exr` crate.
 
 use std::io::{Cursor, Seek, Write};
 
@@ -10,19 +10,19 @@ use exr::prelude::{ReadChannels, ReadLayers, SpecificChannels, Text, WritableIma
 use super::error::CodecError;
 use super::picture::{PictureF32, check_size};
 
-/// Channels of one layer; pictures have four, renderings with many outputs a few dozen.
+/// Maximum number of channels of a layer. Images have four; renderings with many outputs have a few dozen.
 const MAX_CHANNELS: u64 = 64;
-/// Bytes of one block of rows or tile before compression.
+/// Maximum bytes of a block of rows or a tile before compression.
 const MAX_BLOCK_BYTES: u64 = 1 << 28;
 
-/// The size of the picture that [`decode`] makes.
+/// Returns the size of the image that [`decode`] returns.
 pub(crate) fn header(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
     let meta = MetaData::read_from_buffered(bytes, false).map_err(CodecError::other)?;
     meta.headers.iter().try_for_each(|header| check_header(header, max_texels))?;
     picture_size(colored(&meta.headers)?, max_texels)
 }
 
-/// The first layer that has colors.
+/// Returns the first layer that has colors.
 fn colored(headers: &[Header]) -> Result<&Header, CodecError> {
     let has = |header: &Header, name| header.channels.find_index_of_channel(&Text::from(name)).is_some();
     let has_rgb = |header: &&Header| !header.deep && ["R", "G", "B"].into_iter().all(|name| has(header, name));
@@ -36,10 +36,10 @@ fn picture_size(header: &Header, max_texels: [u32; 2]) -> Result<[u32; 2], Codec
     Ok(size_texels)
 }
 
-/// Decodes the first layer that has the channels R, G and B, to four numbers a texel over the display window. Without a
-/// channel A, alpha is 1; texels outside of the data window are 0.
+/// Decodes the first layer with channels R, G and B to four numbers a texel over the display window. Alpha is 1 without
+/// a channel A; texels outside of the data window are 0.
 pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
-    // The reader believes the sizes as soon as it is made, so the header is read apart before.
+    // The reader trusts the sizes when it is created, so the header is checked before.
     header(bytes, max_texels)?;
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(CodecError::other)?;
     let header = colored(reader.headers())?;
@@ -67,8 +67,8 @@ pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, C
     Ok(PictureF32 { size_texels, rgba: image.layer_data.channel_data.pixels })
 }
 
-/// Refuses a header whose sizes would make the decoder allocate without bound. It trusts them: the data window, which is
-/// not the picture's size, and the tiles decide what a block takes.
+/// Rejects a header whose sizes would let the decoder allocate without bound. The size of a block follows from the data
+/// window, which may differ from the image size, and from the tiles.
 fn check_header(header: &Header, [max_width, max_height]: [u32; 2]) -> Result<(), CodecError> {
     let size = header.layer_size;
     let mut sizes = vec![
@@ -85,15 +85,15 @@ fn check_header(header: &Header, [max_width, max_height]: [u32; 2]) -> Result<()
     if let Some((what, value, limit)) = sizes.into_iter().find(|(_, value, limit)| *value as u64 > *limit) {
         return Err(too_large(what, value, limit));
     }
-    // Last, since the product of sizes within their limits cannot overflow.
+    // Checked last, since the product of sizes within their limits cannot overflow.
     match header.max_block_byte_size() {
         block if block as u64 > MAX_BLOCK_BYTES => Err(too_large("size of a block in bytes", block, MAX_BLOCK_BYTES)),
         _ => Ok(()),
     }
 }
 
-/// Encodes four numbers a texel, linear light, as 32-bit floats without compression loss. The number of texels must be that
-/// of the size.
+/// Encodes four numbers a texel, linear light, as 32-bit floats with lossless compression. The number of texels must
+/// match the size.
 pub(crate) fn encode(to: impl Write + Seek, size_texels: [u32; 2], rgba: &[[f32; 4]]) -> Result<(), CodecError> {
     let size = Vec2(size_texels[0] as usize, size_texels[1] as usize);
     let channels = SpecificChannels::rgba(|at: Vec2<usize>| {

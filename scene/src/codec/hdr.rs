@@ -1,14 +1,15 @@
-//! Radiance `.hdr` files: three mantissas with a shared exponent, in runs (Ward, "Real Pixels", Graphics Gems II, 1991).
+//! Radiance `.hdr` files: three mantissas with a shared exponent, run-length encoded (Ward, "Real Pixels", Graphics
+//! Gems II, 1991).
 
 use super::error::{CodecError, HdrError};
 use super::picture::{PictureF32, check_size};
 
-/// The size that the header states.
+/// Returns the size in the header.
 pub(crate) fn header(bytes: &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
     read_header(&mut { bytes }, max_texels)
 }
 
-/// The size that the header states; what follows it is left.
+/// Returns the size in the header and advances `rest` to the texels.
 fn read_header(rest: &mut &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], CodecError> {
     if !line(rest).is_some_and(|first| first.starts_with(b"#?RADIANCE")) {
         return Err(HdrError::Signature.into());
@@ -29,13 +30,13 @@ fn read_header(rest: &mut &[u8], max_texels: [u32; 2]) -> Result<[u32; 2], Codec
     Ok(size_texels)
 }
 
-/// Decodes to four numbers a texel, alpha 1. `EXPOSURE` and `COLORCORR` are not applied.
+/// Decodes to four numbers a texel, alpha 1. `EXPOSURE` and `COLORCORR` are ignored.
 pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, CodecError> {
     let mut rest = bytes;
     let size_texels = read_header(&mut rest, max_texels)?;
     let [width, height] = size_texels;
     let mut row = vec![[0; 4]; width as usize];
-    // What a file claims takes no memory before its bytes are there: rows are appended as they are read.
+    // Rows are appended as they are read, so that memory use is bounded by the bytes of the file.
     let mut rgba = Vec::new();
     for y in 0..height {
         decode_row(&mut rest, &mut row, y)?;
@@ -44,7 +45,7 @@ pub(crate) fn decode(bytes: &[u8], max_texels: [u32; 2]) -> Result<PictureF32, C
     Ok(PictureF32 { size_texels, rgba })
 }
 
-/// The bytes up to the next line break, which is dropped; `None` at the end.
+/// Returns the bytes up to the next line break, which is consumed; `None` at the end.
 fn line<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     if rest.is_empty() {
         return None;
@@ -55,7 +56,7 @@ fn line<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     Some(line)
 }
 
-/// Width and height. Only rows from the top, each from the left, are in use.
+/// Parses width and height. Only rows from top to bottom and left to right are supported, the only order in use.
 fn size(line: &[u8]) -> Result<[u32; 2], HdrError> {
     let text = String::from_utf8_lossy(line);
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -64,7 +65,7 @@ fn size(line: &[u8]) -> Result<[u32; 2], HdrError> {
     Ok([number(width)?, number(height)?])
 }
 
-/// Mantissas in units of 2^(exponent - 136). An exponent of zero is black.
+/// Converts a texel; mantissas are in units of 2^(exponent − 136), and an exponent of zero is black.
 fn radiance([r, g, b, exponent]: [u8; 4]) -> [f32; 4] {
     // 2^(exponent - 128), which is subnormal for 1, and then the eight bits of the mantissas.
     let bits = if exponent > 1 { u32::from(exponent - 1) << 23 } else { u32::from(exponent) << 22 };
@@ -72,7 +73,7 @@ fn radiance([r, g, b, exponent]: [u8; 4]) -> [f32; 4] {
     [unit * f32::from(r), unit * f32::from(g), unit * f32::from(b), 1.0]
 }
 
-/// The next `N` bytes.
+/// Consumes the next `N` bytes.
 fn take<const N: usize>(rest: &mut &[u8]) -> Result<[u8; N], HdrError> {
     let (taken, behind) = rest.split_first_chunk::<N>().ok_or(HdrError::CutShort)?;
     *rest = behind;
@@ -82,13 +83,14 @@ fn take<const N: usize>(rest: &mut &[u8]) -> Result<[u8; N], HdrError> {
 fn decode_row(rest: &mut &[u8], row: &mut [[u8; 4]], y: u32) -> Result<(), HdrError> {
     let first = take::<4>(rest)?;
     match first {
-        // A texel that cannot occur otherwise: each channel follows in runs of its own.
+        // This texel marks a row in which each channel is run-length encoded separately.
         [2, 2, high, _] if high < 128 => (0..4).try_for_each(|channel| decode_channel(rest, row, channel, y)),
         _ => decode_texels(rest, first, row, y),
     }
 }
 
-/// Runs of one channel: up to 128 bytes as they are, or, above 128, one byte that many times.
+/// Decodes the runs of one channel. A code up to 128 precedes that many literal bytes; a larger code repeats one byte
+/// code − 128 times.
 fn decode_channel(rest: &mut &[u8], row: &mut [[u8; 4]], channel: usize, y: u32) -> Result<(), HdrError> {
     let mut at = 0;
     while at < row.len() {
@@ -108,8 +110,8 @@ fn decode_channel(rest: &mut &[u8], row: &mut [[u8; 4]], channel: usize, y: u32)
     Ok(())
 }
 
-/// The older form: whole texels, of which (1, 1, 1, n) repeats the one before n times, and n · 256 times right after
-/// another such mark.
+/// Decodes the older form: runs of whole texels. The texel (1, 1, 1, n) repeats the previous texel n times, or n · 256
+/// times directly after another such marker.
 fn decode_texels(rest: &mut &[u8], first: [u8; 4], row: &mut [[u8; 4]], y: u32) -> Result<(), HdrError> {
     let beyond = HdrError::Run { row: y };
     if let [1, 1, 1, _] = first {

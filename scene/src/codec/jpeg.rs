@@ -1,4 +1,4 @@
-//! JPEG, by the `zune-jpeg` crate.
+//! JPEG, decoded by the `zune-jpeg` crate.
 
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
@@ -8,7 +8,7 @@ use zune_jpeg::JpegDecoder;
 use super::error::CodecError;
 use super::picture::{Header, Picture8, check_size, gray, opaque};
 
-/// A decoder that has read the header, and what that says.
+/// Returns a decoder that has read the header, and the header.
 fn open(bytes: &[u8], max_side_texels: u32) -> Result<(JpegDecoder<ZCursor<&[u8]>>, Header, bool), CodecError> {
     let options = DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -20,12 +20,12 @@ fn open(bytes: &[u8], max_side_texels: u32) -> Result<(JpegDecoder<ZCursor<&[u8]
     let space = if is_gray { ColorSpace::Luma } else { ColorSpace::RGB };
     decoder.set_options(options.jpeg_set_out_colorspace(space));
     let channels = if is_gray { 1 } else { 3 };
-    // Samples of a byte, and coefficients of two, which a progressive file needs all at once.
+    // One byte per sample and two per coefficient; a progressive file needs all coefficients at once.
     let working_bytes = header.texels() * channels * 3;
     Ok((decoder, Header { working_bytes, ..header }, is_gray))
 }
 
-/// Size, and what samples and coefficients take.
+/// Reads the size and the memory for samples and coefficients.
 pub(crate) fn header(bytes: &[u8], max_side_texels: u32) -> Result<Header, CodecError> {
     open(bytes, max_side_texels).map(|(_, header, _)| header)
 }

@@ -1,8 +1,8 @@
-//! Kinds of picture files, told from their first bytes.
+//! Kinds of image files, detected from their first bytes.
 
 use std::fmt;
 
-/// A kind of picture file.
+/// Kind of an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FileKind {
@@ -10,28 +10,28 @@ pub enum FileKind {
     Png,
     /// JPEG.
     Jpeg,
-    /// Radiance, shared exponents.
+    /// Radiance, with shared exponents.
     Hdr,
     /// OpenEXR.
     Exr,
     /// WebP.
     WebP,
-    /// GIF, which is never read.
+    /// GIF; not supported.
     Gif,
-    /// Windows bitmap, which is never read.
+    /// Windows bitmap; not supported.
     Bmp,
-    /// TIFF, which is never read.
+    /// TIFF; not supported.
     Tiff,
-    /// DirectDraw surface, which is never read.
+    /// DirectDraw surface; not supported.
     Dds,
-    /// Khronos texture, version 1: environments alone.
+    /// Khronos texture, version 1; environments only.
     Ktx1,
-    /// Khronos texture, version 2: environments and textures.
+    /// Khronos texture, version 2; environments and textures.
     Ktx2,
 }
 
 impl FileKind {
-    /// The kind that these bytes begin like.
+    /// Detects the kind from the first bytes of a file.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         Some(match bytes {
             [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n', ..] => Self::Png,
@@ -49,7 +49,7 @@ impl FileKind {
         })
     }
 
-    /// The feature of this crate that reads this kind, where it is off in this build.
+    /// Returns the feature of this crate that enables this kind, if it is off in this build.
     pub(crate) fn feature(self) -> Option<&'static str> {
         match self {
             Self::Png => (!cfg!(feature = "png")).then_some("png"),

@@ -1,8 +1,8 @@
-//! Khronos textures: cubes of light in either version of the format, and flat textures in version 2 (`texture.rs`).
+//! Khronos textures: cube maps of radiance in versions 1 and 2, and 2D textures in version 2 (`texture.rs`).
 //!
-//! A cube has six square faces, +x −x +y −y +z −z, each with its rows from the top as seen by who looks a cube up by
-//! direction. Its texels are floating-point. Filament's `cmgen` writes two such files of an environment: `_skybox.ktx`, its
-//! radiance, and `_ibl.ktx`, radiance filtered for a roughness a level, with irradiance under the key `sh`.
+//! A cube map has six square faces, +x −x +y −y +z −z, in the row order of cube map lookups. Texels are floating-point.
+//! Filament's `cmgen` writes two such files for an environment. `_skybox.ktx` holds radiance. `_ibl.ktx` holds radiance
+//! prefiltered by roughness, one roughness per level, and irradiance under the key `sh`.
 
 #[cfg(feature = "basisu")]
 mod basis;
@@ -23,7 +23,7 @@ use super::kind::FileKind;
 
 pub(crate) use cube::{CubeF32, CubeHeader};
 
-/// Reads the header of a cube and checks that the file holds all of its levels.
+/// Reads the header of a cube map and checks that the file contains all of its levels.
 pub(crate) fn header(kind: FileKind, bytes: &[u8], max_texels: u32) -> Result<CubeHeader, CodecError> {
     match kind {
         FileKind::Ktx1 => version_1::header(bytes, max_texels),

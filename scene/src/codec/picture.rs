@@ -1,9 +1,9 @@
-//! Decoded pictures.
+//! Decoded images.
 
 use super::error::CodecError;
 use crate::texture::ImageFormat;
 
-/// A picture of eight bits a channel.
+/// Image with eight bits a channel.
 pub(crate) struct Picture8 {
     /// Width and height.
     pub size_texels: [u32; 2],
@@ -11,17 +11,17 @@ pub(crate) struct Picture8 {
     pub rgba8: Vec<u8>,
 }
 
-/// What the header of a picture of eight bits a channel says.
+/// Header of an image with eight bits a channel.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Header {
     /// Width and height.
     pub size_texels: [u32; 2],
-    /// What decoding takes beside the picture itself, in bytes.
+    /// Bytes that decoding allocates in addition to the image.
     pub working_bytes: u64,
 }
 
 impl Header {
-    /// Bytes of the picture once it is decoded.
+    /// Returns the bytes of the decoded image.
     pub fn rgba8_bytes(&self) -> u64 {
         self.texels() * 4
     }
@@ -31,13 +31,13 @@ impl Header {
     }
 }
 
-/// A decoded texture: a picture, or blocks for a device, with the mip levels that the file holds.
+/// Decoded texture: an image or compressed blocks, with the mip levels of the file.
 pub(crate) struct TextureLevels {
     /// Width and height of the first level.
     pub size_texels: [u32; 2],
     /// Format of the texels.
     pub format: ImageFormat,
-    /// The first level, or every level down to 1 × 1.
+    /// The first level alone, or every level down to 1 × 1.
     pub levels: Vec<Vec<u8>>,
 }
 
@@ -47,14 +47,14 @@ impl From<Picture8> for TextureLevels {
     }
 }
 
-/// Size of a texture according to its header.
+/// Size and memory needs of a texture according to its header.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct TextureHeader {
     /// Width and height of the first level.
     pub size_texels: [u32; 2],
-    /// Bytes of all levels once they are decoded.
+    /// Bytes of all decoded levels.
     pub image_bytes: u64,
-    /// Bytes that decoding allocates beside the levels.
+    /// Bytes that decoding allocates in addition to the levels.
     pub working_bytes: u64,
 }
 
@@ -65,7 +65,7 @@ impl From<Header> for TextureHeader {
     }
 }
 
-/// A picture of floats.
+/// Image of floats.
 pub(crate) struct PictureF32 {
     /// Width and height.
     pub size_texels: [u32; 2],
@@ -73,7 +73,7 @@ pub(crate) struct PictureF32 {
     pub rgba: Vec<[f32; 4]>,
 }
 
-/// Refuses sizes of zero or over a limit.
+/// Rejects sizes of zero or over a limit.
 pub(super) fn check_size(size_texels: [u32; 2], limits: [u32; 2]) -> Result<(), CodecError> {
     if size_texels.contains(&0) {
         return Err(CodecError::Empty { size_texels });
@@ -86,19 +86,19 @@ pub(super) fn check_size(size_texels: [u32; 2], limits: [u32; 2]) -> Result<(), 
     Ok(())
 }
 
-/// Three bytes a texel with alpha 255.
+/// Converts three bytes a texel to RGBA with alpha 255.
 #[cfg(any(feature = "png", feature = "jpeg", feature = "webp", feature = "basisu"))]
 pub(super) fn opaque(rgb: &[u8]) -> Vec<u8> {
     widened(rgb, |[r, g, b]| [r, g, b, 255])
 }
 
-/// One byte a texel as all three colors, with alpha 255.
+/// Converts one byte a texel to gray RGBA with alpha 255.
 #[cfg(any(feature = "png", feature = "jpeg"))]
 pub(super) fn gray(luma: &[u8]) -> Vec<u8> {
     widened(luma, |[l]| [l, l, l, 255])
 }
 
-/// Four bytes of each texel of `N`, in as much memory as they take.
+/// Converts samples of `N` bytes to RGBA in a buffer of exactly the needed capacity.
 #[cfg(any(feature = "png", feature = "jpeg", feature = "webp", feature = "basisu"))]
 pub(super) fn widened<const N: usize>(samples: &[u8], rgba: impl Fn([u8; N]) -> [u8; 4]) -> Vec<u8> {
     let (texels, _) = samples.as_chunks::<N>();

@@ -1,4 +1,4 @@
-//! Our decoders and encoders against those of the `image` crate, and sizes that are refused.
+//! Decoders and encoders compared with those of the `image` crate, and rejected sizes.
 
 #[cfg(all(feature = "webp", feature = "basisu", feature = "png"))]
 mod textures;
@@ -9,7 +9,7 @@ use image::{DynamicImage, ImageFormat};
 
 use super::*;
 
-/// Twelve by seven texels in which every channel takes many values, edges and all.
+/// Twelve by seven texels in which every channel takes many values, including the extremes.
 fn picture() -> DynamicImage {
     let texel = |x: u32, y: u32| {
         let spread = |seed: u32| (x * 5003 + y * 9173 + seed * 21_001) % 65_536;
@@ -47,7 +47,7 @@ fn png_of_every_layout_decodes_as_elsewhere() {
     }
 }
 
-/// A palette of two bits an index, with transparency.
+/// A palette with two-bit indices and transparency.
 #[cfg(feature = "png")]
 #[test]
 fn palettes_become_colors() {
@@ -95,7 +95,7 @@ fn radiance_decodes_as_elsewhere() {
         compare_radiance(&encoded(&picture, ImageFormat::Hdr));
     }
     let header = b"#?RADIANCE\n# made by hand\nFORMAT=32-bit_rle_rgbe\nEXPOSURE= 2\n\n-Y 2 +X 301\n";
-    // Whole texels: 1, then 300 repeats written as 44 + 256, then plain ones and a repeat.
+    // Whole texels: 1, then 300 repeats encoded as 44 + 256, then literal texels and a repeat.
     let first = [[9, 8, 7, 130], [1, 1, 1, 44], [1, 1, 1, 1]];
     let second = [[[5, 6, 7, 120]; 2].as_slice(), &[[1, 1, 1, 200], [3, 3, 3, 0], [1, 1, 1, 98]]].concat();
     compare_radiance(&[header, first.as_flattened(), second.as_flattened()].concat());
@@ -140,7 +140,7 @@ fn openexr_decodes_and_is_written_as_elsewhere() {
     assert_eq!(*ours.get_ref(), theirs);
     let rgb = encoded(&picture().to_rgb32f().into(), ImageFormat::OpenExr);
     for bytes in [theirs, rgb] {
-        // Tiles are 64 texels wide whatever the picture is.
+        // Tiles are 64 texels wide, regardless of the image size.
         let decoded = decode_f32(&bytes, [64, 64]).expect("a good file");
         let expected = image::load_from_memory(&bytes).expect("a good file").into_rgba32f();
         assert_eq!(decoded.size_texels, [12, 7]);
@@ -173,7 +173,7 @@ fn sizes_over_the_limit_are_refused_before_anything_is_decoded() {
 #[test]
 fn other_kinds_are_told_apart_and_named() {
     let error = decode_8(b"GIF89a", 8).map(|_| ()).expect_err("it is not read").to_string();
-    assert_eq!(error, "GIF pictures are not read here");
+    assert_eq!(error, "GIF images are not supported here");
     assert!(matches!(decode_8(b"", 8), Err(CodecError::NoBytes)));
     assert!(matches!(decode_f32(b"hello", [8, 8]), Err(CodecError::Unknown)));
 }

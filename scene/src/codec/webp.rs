@@ -1,4 +1,4 @@
-//! WebP, by the `image-webp` crate.
+//! WebP, decoded by the `image-webp` crate.
 
 use std::io::Cursor;
 
@@ -7,19 +7,19 @@ use image_webp::WebPDecoder;
 use super::error::CodecError;
 use super::picture::{Header, Picture8, check_size, opaque};
 
-/// Maximum number of bytes per texel that decoding allocates beside the picture (RFC 9649). A lossy picture has samples of
-/// three bytes and planes of luma, chroma and alpha; a lossless one has samples of four bytes and images of transforms.
+/// Maximum number of bytes per texel that decoding allocates in addition to the image (RFC 9649). A lossy image has
+/// three-byte samples and planes of luma, chroma and alpha. A lossless one has four-byte samples and transform images.
 const WORKING_BYTES: u64 = 8;
 
-/// Reads the header and refuses animations, and sizes over the limit.
+/// Reads the header; rejects animations and sizes over the limit.
 fn open(bytes: &[u8], max_side_texels: u32) -> Result<WebPDecoder<Cursor<&[u8]>>, CodecError> {
     let decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(CodecError::other)?;
     let (width, height) = decoder.dimensions();
     check_size([width, height], [max_side_texels; 2])?;
     if decoder.is_animated() {
-        return Err(CodecError::Other("it is an animation; use a still picture".into()));
+        return Err(CodecError::Other("it is an animation; use a still image".into()));
     }
-    // The decoder allocates by the size of the lossy frame before it compares that with the size of the picture.
+    // The decoder allocates memory for the lossy frame before it compares the frame size with the image size.
     match lossy_size(bytes) {
         Some(frame) if frame != [width, height] => {
             let [frame_width, frame_height] = frame;
@@ -53,7 +53,7 @@ pub(super) fn header(bytes: &[u8], max_side_texels: u32) -> Result<Header, Codec
     Ok(Header { working_bytes: header.texels() * WORKING_BYTES, ..header })
 }
 
-/// Decodes a lossy or lossless picture to four bytes a texel, straight alpha. Embedded profiles are ignored.
+/// Decodes a lossy or lossless image to four bytes a texel, straight alpha. Embedded profiles are ignored.
 pub(super) fn decode(bytes: &[u8], max_side_texels: u32) -> Result<Picture8, CodecError> {
     let mut decoder = open(bytes, max_side_texels)?;
     let (width, height) = decoder.dimensions();

@@ -1,17 +1,18 @@
-//! The cleaning of what real files hold: negative radiance from lossy compression, infinities from overflow, NaN.
+//! Repair of invalid texels in environment maps: negative radiance from lossy compression, infinities from overflow,
+//! and NaN.
 
 use std::borrow::Cow;
 
 use super::equirect::EquirectMap;
 
-/// The largest radiance a texel keeps. Above the sun's disc (1.6e9 nits), and small enough that sums
-/// and squares stay finite in f32.
+/// Maximum radiance of a texel. Above the radiance of the sun's disc (1.6e9 nits), and small enough that sums and
+/// squares stay finite in f32.
 pub const MAX_RADIANCE: f32 = 1e10;
 
-/// What an infinite texel becomes: infinities in files are values that overflowed a half float.
+/// Replacement for an infinite channel: infinities in files are values that overflowed a half float.
 const INFINITY_STANDS_FOR: f32 = 65504.0;
 
-/// What cleaning changed. Texels are counted, once each, in the order of severity.
+/// Statistics of a repair. Each texel counts once, in its most severe class.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cleaning {
     /// Texels with a NaN or infinite channel.
@@ -25,13 +26,13 @@ pub struct Cleaning {
 }
 
 impl Cleaning {
-    /// How many texels were changed.
+    /// Returns the number of repaired texels.
     #[must_use]
     pub fn clamped(&self) -> usize {
         self.non_finite + self.negative + self.excessive
     }
 
-    /// The warnings for `file` of `texels` texels; none when nothing was changed.
+    /// Returns the warnings for `file` with `texels` texels; empty if nothing was repaired.
     pub fn warnings(&self, file: &str, texels: usize) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.negative > 0 {
@@ -58,8 +59,7 @@ impl Cleaning {
     }
 }
 
-/// Brings every channel into 0…[`MAX_RADIANCE`] and sets alpha to 1. NaN is found by
-/// `is_finite`, never by comparison.
+/// Clamps every channel to 0…[`MAX_RADIANCE`] and sets alpha to 1. NaN is detected with `is_finite`, not by comparison.
 pub(super) fn clean(texels: &mut [[f32; 4]]) -> Cleaning {
     let mut cleaning = Cleaning::default();
     for texel in texels {
@@ -87,9 +87,9 @@ pub(super) fn clean(texels: &mut [[f32; 4]]) -> Cleaning {
     cleaning
 }
 
-/// The map itself where every texel is sound, else a cleaned copy. What was changed is counted.
+/// Returns the map itself if every texel is valid, otherwise a repaired copy, with the statistics of the repair.
 pub fn cleaned(map: &EquirectMap) -> (Cow<'_, EquirectMap>, Cleaning) {
-    // A comparison with NaN is false.
+    // Comparisons with NaN are false.
     let sound = |c: &f32| *c >= 0.0 && *c <= MAX_RADIANCE;
     if map.texels().iter().all(|[r, g, b, _]| sound(r) && sound(g) && sound(b)) {
         return (Cow::Borrowed(map), Cleaning::default());

@@ -1,20 +1,20 @@
-//! Cubes of radiance: six faces, looked up by direction as graphics interfaces do.
+//! Cube maps of radiance: six faces, looked up by direction as in graphics APIs.
 //!
-//! Faces are seen from inside, mirrored: on +x, u runs toward −z and v toward −y, so that a picture that was made for the
-//! outside of a box is right where it is looked up. Environments are kept as equirectangular maps; a cube is resampled.
+//! Faces are seen from inside and mirrored: on +x, u points toward −z and v toward −y, as in cube map lookups.
+//! Environments are stored as equirectangular maps, so cube maps are resampled.
 
 use glam::{DVec2, DVec3};
 
 use super::equirect::{EquirectMap, direction_from_equirect_uv};
 
-/// A cube of `size`² texels a face, faces +x −x +y −y +z −z one after the other.
+/// A cube map of `size`² texels per face, faces in the order +x −x +y −y +z −z.
 pub(super) struct Cube<'a> {
     pub size: u32,
     pub texels: &'a [[f32; 4]],
 }
 
-/// The direction, of no particular length, of a point of a face: u to the right, v downward, both −1…1 on the face and
-/// beyond that on its plane.
+/// Returns the direction, not normalized, of a point on a face. u points right and v down, both in −1…1 on the face;
+/// values beyond continue its plane.
 fn direction(face: usize, DVec2 { x: u, y: v }: DVec2) -> DVec3 {
     match face {
         0 => DVec3::new(1.0, -v, -u),
@@ -26,7 +26,7 @@ fn direction(face: usize, DVec2 { x: u, y: v }: DVec2) -> DVec3 {
     }
 }
 
-/// The face that shows a direction, and where on it.
+/// Returns the face in a direction, and the point on it.
 fn face(d: DVec3) -> (usize, DVec2) {
     let size = d.abs();
     let (face, along, across) = if size.x >= size.y && size.x >= size.z {
@@ -42,13 +42,13 @@ fn face(d: DVec3) -> (usize, DVec2) {
 }
 
 impl Cube<'_> {
-    /// Bytes of the map that [`panorama`](Self::panorama) makes of a cube of this size.
+    /// Returns the bytes of the map that [`panorama`](Self::panorama) creates from a cube map of this size.
     pub fn panorama_bytes(size: u32) -> u64 {
         16 * 8 * u64::from(size).pow(2)
     }
 
-    /// The cube as an equirectangular map: a texel at the horizon is as wide as one of the cube, and holds the mean of four
-    /// points.
+    /// Resamples the cube map to an equirectangular map. Texels at the horizon are as wide as those of the cube map;
+    /// each averages four samples.
     pub fn panorama(&self) -> EquirectMap {
         let (width, height) = (4 * self.size, 2 * self.size);
         let mut texels = Vec::with_capacity(width as usize * height as usize);
@@ -67,7 +67,7 @@ impl Cube<'_> {
         EquirectMap::new(width, height, texels)
     }
 
-    /// The radiance of a direction, from the four texels about it; over the edge of a face they are its neighbor's.
+    /// Returns the bilinearly filtered radiance in a direction, continued across face edges.
     fn radiance(&self, toward: DVec3) -> DVec3 {
         let (face, uv) = face(toward);
         let at = (uv + 1.0) * (0.5 * f64::from(self.size)) - 0.5;
@@ -77,7 +77,7 @@ impl Cube<'_> {
         top.lerp(corner(0.0, 1.0).lerp(corner(1.0, 1.0), share.x), share.y)
     }
 
-    /// A texel by column and row, which may be one beyond the face.
+    /// Returns a texel by column and row, which may be one beyond the face.
     fn texel(&self, on: usize, at: DVec2) -> DVec3 {
         let size = f64::from(self.size);
         let (mut on, mut at) = (on, at);

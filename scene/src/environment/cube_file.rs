@@ -1,4 +1,4 @@
-//! Environments from cubes in Khronos textures.
+//! Environments from cube maps in Khronos textures.
 
 use std::path::Path;
 
@@ -13,11 +13,11 @@ use crate::error::{SceneError, one_line};
 use crate::options::LoadOptions;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 
-/// Larger cubes are refused: resampled they are as large as the largest picture that is read.
+/// Maximum face size; a larger cube map would resample to more than the maximum image size.
 const MAX_TEXELS: u32 = 4096;
 
-/// A cube becomes a map; where irradiance comes with it, its levels are light that was filtered already. A cube without
-/// irradiance, or of one level, is radiance, and levels after its first are not read.
+/// Converts a cube map to an environment. If the file contains irradiance, its levels are prefiltered radiance. Without
+/// irradiance, or with one level, it is radiance and only the first level is read.
 pub(super) fn load(
     path: &Path,
     kind: FileKind,
@@ -35,7 +35,7 @@ pub(super) fn load(
     let (decoded_bytes, map_bytes) = (header.decoded_bytes(levels), Cube::panorama_bytes(size));
     let at = || format!("environment, a cube of {size}²");
     let over = |budget| SceneError::Memory { file: path.into(), at: at(), budget };
-    // Once more for the map: its halves, weighted by solid angle, are made of it.
+    // The map is counted twice, since its solid-angle-weighted mip levels are made later.
     options.memory.keep(decoded_bytes + 2 * map_bytes).map_err(over)?;
     options.memory.free(if harmonics.is_some() { map_bytes } else { map_bytes + decoded_bytes });
 

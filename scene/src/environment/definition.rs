@@ -1,4 +1,4 @@
-//! What an environment is.
+//! Environment definition.
 
 use glam::DVec3;
 
@@ -9,28 +9,28 @@ use crate::error::SceneError;
 use crate::light::{Light, LightKind};
 use crate::scene::Scene;
 
-/// What surrounds the scene.
+/// Surroundings of the scene: radiance from infinity and the sun.
 #[derive(Clone, Debug)]
 pub struct Environment {
-    /// For messages: the file, or what generated it.
+    /// Name for messages: the file or the generator.
     pub name: String,
-    /// Radiance of every direction, linear Rec.709. In nits for the procedural sky; files have
-    /// whatever unit their maker chose, which is taken for nits.
+    /// Radiance of every direction, linear Rec.709. In nits for the procedural sky; radiance in files, whose unit is
+    /// arbitrary, is interpreted as nits.
     pub map: EquirectMap,
-    /// The sun, where it is not part of the map.
+    /// The sun, if it is not part of the map.
     pub sun: Option<Light>,
-    /// Light that came ready-made with the map, and is taken instead of what would be made of the map.
+    /// Prefiltered radiance and irradiance from the file, used instead of filtering the map.
     pub filtered: Option<FilteredLight>,
-    /// What was repaired while loading, a line each.
+    /// Repairs made while loading, one line each.
     pub warnings: Vec<String>,
 }
 
 impl Environment {
-    /// The same radiance, in nits, from everywhere.
+    /// Returns an environment with this radiance, in nits, in every direction.
     ///
     /// # Errors
     ///
-    /// When a channel is negative or not finite.
+    /// Fails if a channel is negative or not finite.
     pub fn uniform(radiance_nits: DVec3) -> Result<Self, SceneError> {
         let good = |channel: &f64| channel.is_finite() && *channel >= 0.0;
         if let Some(value) = radiance_nits.to_array().into_iter().find(|channel| !good(channel)) {
@@ -46,14 +46,15 @@ impl Environment {
         })
     }
 
-    /// The mean luminance over all directions in nits, the sun apart.
+    /// Returns the mean luminance over all directions in nits, without the sun.
     #[must_use]
     pub fn average_luminance_nits(&self) -> f64 {
         luminance_from_rec709(self.map.average())
     }
 
-    /// The exposure value at ISO 100 that shows a white card in a scene as white: lit by half the sphere of the environment,
-    /// and by the sun at 60° from its normal. Its luminance is E / π, and 1 / (1.2 · 2^EV100) of that is to be 1.
+    /// Returns the exposure value at ISO 100 at which a white diffuse card appears white. Its luminance E / π times 1 /
+    /// (1.2 · 2^EV100) is then 1. The card is lit by a hemisphere of the environment, and by the sun at 60° from its
+    /// normal.
     #[must_use]
     pub fn metered_ev100(&self, scene: &Scene) -> f32 {
         let sky_lux = std::f64::consts::PI * self.average_luminance_nits();

@@ -1,14 +1,14 @@
-//! Equirectangular maps: longitude across, latitude down.
+//! Equirectangular maps: longitude along x, latitude along y.
 //!
-//! The middle of the picture looks along −z, the direction of a fresh camera; +x is a quarter of the
-//! width to the right of it; the top row looks along +y:
+//! The image center shows −z, the default view direction; +x is a quarter of the width to its right; the top row shows
+//! +y:
 //!
 //! ```text
 //!  u = ½ + atan2(x, −z) / 2π      0 +z ── ¼ −x ── ½ −z ── ¾ +x ── 1 +z
 //!  v = acos(y) / π                0 +y … ½ horizon … 1 −y
 //! ```
 //!
-//! Shaders that sample such a map must use the same two lines.
+//! Shaders that sample such a map must use the same mapping.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,7 +22,7 @@ pub struct EquirectMap {
     rgba: Vec<[f32; 4]>,
 }
 
-/// The unit direction of a point of the picture, u and v in 0…1.
+/// Returns the unit direction of a point in the image, u and v in 0…1.
 #[must_use]
 pub fn direction_from_equirect_uv(uv: DVec2) -> DVec3 {
     let (sin_phi, cos_phi) = ((uv.x - 0.5) * TAU).sin_cos();
@@ -30,7 +30,7 @@ pub fn direction_from_equirect_uv(uv: DVec2) -> DVec3 {
     DVec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta)
 }
 
-/// The point of the picture that shows a unit direction. u is 0.5 at the poles.
+/// Returns the image point of a unit direction. u is 0.5 at the poles.
 #[must_use]
 pub fn equirect_uv_from_direction(direction: DVec3) -> DVec2 {
     let around = if direction.x == 0.0 && direction.z == 0.0 { 0.0 } else { direction.x.atan2(-direction.z) };
@@ -38,11 +38,11 @@ pub fn equirect_uv_from_direction(direction: DVec3) -> DVec2 {
 }
 
 impl EquirectMap {
-    /// A map of `rgba` texels, row 0 at the top.
+    /// Creates a map from `rgba` texels, row 0 at the top.
     ///
     /// # Panics
     ///
-    /// When the number of texels is not `width * height`, or that is zero.
+    /// If the number of texels is not `width * height`, or is zero.
     #[must_use]
     pub fn new(width: u32, height: u32, rgba: Vec<[f32; 4]>) -> Self {
         assert!(width > 0 && height > 0);
@@ -50,11 +50,11 @@ impl EquirectMap {
         Self { width, height, rgba }
     }
 
-    /// A map of `radiance` at the centers of its texels.
+    /// Creates a map from `radiance` in the directions of its texel centers.
     ///
     /// # Panics
     ///
-    /// When a side is zero.
+    /// If a side is zero.
     #[must_use]
     pub fn from_fn(width: u32, height: u32, radiance: impl Fn(DVec3) -> DVec3) -> Self {
         let mut rgba = Vec::with_capacity(width as usize * height as usize);
@@ -68,25 +68,25 @@ impl EquirectMap {
         Self::new(width, height, rgba)
     }
 
-    /// Width in texels, at least 1.
+    /// Returns the width in texels, at least 1.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Height in texels, at least 1.
+    /// Returns the height in texels, at least 1.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// The texels, row 0 at the top.
+    /// Returns the texels, row 0 at the top.
     #[must_use]
     pub fn texels(&self) -> &[[f32; 4]] {
         &self.rgba
     }
 
-    /// Whether all texels are the same, to the bit.
+    /// Returns true if all texels are equal bit for bit.
     #[must_use]
     pub fn is_even(&self) -> bool {
         self.rgba.iter().all(|texel| texel.map(f32::to_bits) == self.rgba[0].map(f32::to_bits))
@@ -114,7 +114,7 @@ impl EquirectMap {
         }
     }
 
-    /// The mean radiance over all directions.
+    /// Returns the mean radiance over all directions.
     #[must_use]
     pub fn average(&self) -> DVec3 {
         let mut sum = DVec3::ZERO;
@@ -122,8 +122,8 @@ impl EquirectMap {
         sum / (2.0 * TAU)
     }
 
-    /// The irradiance on a surface with unit normal `normal`, by summing every texel: the slow truth
-    /// that spherical harmonics approximate. In the unit of the map times steradian.
+    /// Returns the irradiance on a surface with unit normal `normal`, in the unit of the map times steradian. Sums
+    /// every texel: slow, but the reference for spherical harmonics.
     #[must_use]
     pub fn irradiance(&self, normal: DVec3) -> DVec3 {
         let mut sum = DVec3::ZERO;

@@ -1,9 +1,10 @@
-//! Taking the sun out of a map.
+//! Extraction of the sun from an environment map.
 //!
-//! A sun inside a map is the hardest case for all that filters it: three bands of spherical harmonics
-//! err by 9 % of its irradiance and ring, importance sampling leaves fireflies, and it casts no shadow.
-//! As a light it has none of these. What makes a sun is that it is small and much brighter than what is
-//! around it; lamps and windows of several degrees are left in the map, which shows them well.
+//! A sun inside a map is difficult to filter. Three bands of spherical harmonics misrepresent 9 % of its irradiance and
+//! ring, importance sampling leaves fireflies, and the sun casts no shadow. A directional light avoids all of this.
+//!
+//! The sun is recognized as small and much brighter than its surroundings. Studio lights and windows of several degrees
+//! stay in the map, which represents them well.
 
 use std::fmt;
 
@@ -14,37 +15,37 @@ use super::equirect::EquirectMap;
 use crate::color::luminance_from_rec709;
 use crate::light::{Light, LightKind};
 
-/// What belongs to the sun lies this close to the brightest texel, in radians (2.5°): its disc and the
-/// texels that cameras and resampling spread it over.
+/// Radius in radians (2.5°) around the brightest texel that is attributed to the sun. It covers the disc and the texels
+/// over which cameras and resampling spread it.
 const CONE_RAD: f64 = 0.043_633;
-/// The same in texels of a coarse map, should that be wider.
+/// Radius of that cone in texels of a coarse map, if this is larger.
 const CONE_TEXELS: f64 = 2.5;
-/// What surrounds it lies up to this many times as far.
+/// Outer radius of the surroundings, relative to the sun's cone.
 const RING: f64 = 2.0;
-/// The sun is this many times brighter than its surroundings are in the mean. On the maps tried, suns
-/// are 60 to 90 times brighter, a studio lamp of 4° is 6 times, a sunlit cloud 2 times.
+/// Minimum ratio of the sun to the mean of its surroundings. In measured maps the ratio is 60 to 90 for suns, 6 for a
+/// studio light of 4°, and 2 for a sunlit cloud.
 const MIN_CONTRAST: f64 = 20.0;
 
-/// What became of a map's sun.
+/// Result of extracting the sun.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SunExtraction {
-    /// It is a light now, and no longer in the map.
+    /// The sun was removed from the map and is now a light.
     Extracted {
-        /// The light: direction, illuminance, color, angular radius.
+        /// The sun: direction, illuminance, color, angular radius.
         light: Light,
-        /// How many texels were clamped.
+        /// Number of clamped texels.
         texels: usize,
-        /// How many times brighter than its surroundings it was.
+        /// Ratio of the sun to the mean of its surroundings.
         contrast: f64,
     },
-    /// The map has none: its brightest point is only this many times brighter than what is around it.
+    /// The map has no sun: its brightest point is not bright enough relative to its surroundings.
     None {
-        /// The contrast found; below it the brightest point counts as part of the scenery.
+        /// Ratio of the brightest point to its surroundings.
         contrast: f64,
     },
-    /// The environment came with its sun apart.
+    /// The sun of the environment was separate already.
     Apart,
-    /// The environment came with light made of it already, which a sun in the map is part of.
+    /// The environment has prefiltered light that includes any sun of the map.
     Filtered,
 }
 
@@ -72,25 +73,25 @@ impl fmt::Display for SunExtraction {
             Self::None { contrast } => {
                 write!(
                     f,
-                    "the map has no sun: its brightest point is {contrast:.1} times as bright as what is around it"
+                    "the map has no sun: its brightest point is {contrast:.1} times as bright as its surroundings"
                 )
             }
-            Self::Apart => f.write_str("the sun is apart from the map already"),
-            Self::Filtered => f.write_str("light was made of the map already, its sun in it"),
+            Self::Apart => f.write_str("the sun is separate from the map already"),
+            Self::Filtered => f.write_str("the map has prefiltered light that includes its sun"),
         }
     }
 }
 
 impl Environment {
-    /// Makes the sun of the map a directional light and clamps its texels to the brightest of their
-    /// surroundings. The unit of illuminance is the map's times steradian: lux if the map is in nits.
+    /// Replaces the sun in the map by a directional light; its texels are clamped to the brightest texel of the
+    /// surroundings. The light's illuminance is in the map's unit times steradian: lux if the map is in nits.
     ///
-    /// The light carries exactly the irradiance that the clamping removes from a surface facing it. Its
-    /// angular radius is that of a uniform disc as concentrated as what was removed; it cannot be
-    /// smaller than a texel shows, so low resolutions overstate the real sun's 0.27°.
+    /// The light carries exactly the irradiance that clamping removes from a surface facing it. Its angular radius is
+    /// that of a uniform disc with equal concentration. It is at least the size of a texel, so low resolutions
+    /// overestimate the real sun's 0.27°.
     ///
-    /// Leaves the environment alone where there is no sun, where it is apart already, and where light was made of the map. Pure arithmetic on the
-    /// map: the same map gives the same light.
+    /// Does nothing if the map has no sun, the sun is already separate, or the environment has prefiltered light.
+    /// Deterministic.
     pub fn extract_sun(&mut self) -> SunExtraction {
         if self.sun.is_some() {
             return SunExtraction::Apart;
@@ -113,7 +114,7 @@ impl Environment {
     }
 }
 
-/// The brightest texel and what is around it.
+/// Brightest texel and its surroundings.
 struct Found {
     toward: DVec3,
     cos_cone: f64,
@@ -144,21 +145,21 @@ impl Found {
                 ring_peak = ring_peak.max(luminance);
             }
         });
-        // A map so coarse that there is no ring has no sun that could be told.
+        // In a map too coarse for surroundings, no sun can be recognized.
         let ring_mean = if area > 0.0 { sum / area } else { f64::INFINITY };
         Self { toward, cos_cone, peak, ring_mean, ring_peak }
     }
 
-    /// How many times brighter than its surroundings; at most 1e9, for a sun in blackness.
+    /// Returns the ratio of the brightest texel to its surroundings; at most 1e9, for a sun on black.
     fn contrast(&self) -> f64 {
         if self.peak <= 0.0 { 0.0 } else { self.peak / self.ring_mean.max(self.peak * 1e-9) }
     }
 }
 
-/// What clamping took away.
+/// Light removed by clamping.
 #[derive(Default)]
 struct Removed {
-    /// ∫ radiance · direction, a vector for each channel.
+    /// ∫ radiance · direction, one vector per channel.
     vectors: [DVec3; 3],
     luminous: f64,
     luminous2: f64,
@@ -190,7 +191,7 @@ impl Removed {
     }
 }
 
-/// The map without the sun, and what that took.
+/// Returns the map without the sun, and the removed light.
 fn clamp(map: &EquirectMap, found: &Found) -> (Removed, EquirectMap) {
     let mut texels = map.texels().to_vec();
     let mut removed = Removed::default();
@@ -198,7 +199,7 @@ fn clamp(map: &EquirectMap, found: &Found) -> (Removed, EquirectMap) {
     map.for_each_texel(|direction, solid_angle, radiance| {
         let luminance = luminance_from_rec709(radiance);
         if luminance > found.ring_peak && direction.dot(found.toward) >= found.cos_cone {
-            // The hue stays; a texel is its rounded self, so that light and map add up to what was.
+            // Keeps the hue. The texel's rounded value is subtracted, so that light and map add up to the original.
             let left = (radiance * (found.ring_peak / luminance)).as_vec3();
             let taken = radiance - left.as_dvec3();
             for (vector, channel) in removed.vectors.iter_mut().zip(taken.to_array()) {

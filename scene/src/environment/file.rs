@@ -1,4 +1,4 @@
-//! Environments from Radiance `.hdr` (Ward, 1991) and OpenEXR `.exr` files, and from cubes in Khronos textures.
+//! Environments from Radiance `.hdr` (Ward, 1991), OpenEXR `.exr`, and cube maps in Khronos textures.
 
 use std::path::Path;
 
@@ -13,31 +13,31 @@ use crate::options::LoadOptions;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file};
 
-/// Larger maps are refused: 16384 × 8192 is the largest size in circulation.
+/// Maximum map size; 16384 × 8192 is the largest in circulation.
 const MAX_TEXELS: [u32; 2] = [16384, 8192];
 
 impl Environment {
-    /// [`Environment::load_with`] the default options.
+    /// Loads an environment with the default options.
     ///
     /// # Errors
     ///
-    /// As there.
+    /// Returns the errors of [`Environment::load_with`].
     pub fn load(path: &Path, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
         Self::load_with(path, &LoadOptions::default(), progress)
     }
 
-    /// Loads a Radiance `.hdr` or OpenEXR `.exr` picture in equirectangular projection, or a cube in a Khronos texture,
-    /// `.ktx` or `.ktx2`. The format is told from the content.
+    /// Loads an equirectangular image in Radiance `.hdr` or OpenEXR `.exr`, or a cube map in a Khronos texture, `.ktx`
+    /// or `.ktx2`. The format is detected from the content.
     ///
-    /// A cube has floating-point texels and is not compressed. If it has irradiance in its metadata, under `sh` as Filament's
-    /// `cmgen` writes it, and more than one level, its light is [`filtered`](Self::filtered) already.
+    /// Cube maps must have uncompressed floating-point texels. A cube map with several levels and irradiance under the
+    /// metadata key `sh`, as written by Filament's `cmgen`, is used as [`filtered`](Self::filtered) light.
     ///
-    /// Negative, infinite and NaN texels are clamped, counted, and reported in
-    /// [`warnings`](Self::warnings). What the map takes stays taken of `options.memory`.
+    /// Negative, infinite and NaN texels are clamped, counted and reported in [`warnings`](Self::warnings). The memory
+    /// of the map stays charged to `options.memory`.
     ///
     /// # Errors
     ///
-    /// One line that names the file and the reason.
+    /// Returns a one-line error with the file and the reason.
     pub fn load_with(path: &Path, options: &LoadOptions, progress: &mut ProgressFn<'_>) -> Result<Self, SceneError> {
         let length = file_bytes(path)?;
         let over = |budget| SceneError::Memory { file: path.into(), at: "environment".into(), budget };
@@ -47,11 +47,11 @@ impl Environment {
         loaded
     }
 
-    /// Loads a picture that is in memory; `path` names it in messages.
+    /// Loads an environment from bytes; `path` is its name in messages.
     ///
     /// # Errors
     ///
-    /// As [`Environment::load_with`].
+    /// Returns the errors of [`Environment::load_with`].
     pub fn load_bytes(
         path: &Path,
         bytes: &[u8],
@@ -80,7 +80,7 @@ fn load(
     report(progress, path, step(0))?;
     let [width, height] = header_f32(bytes, MAX_TEXELS).map_err(|error| refused(path, error))?;
     let map_bytes = u64::from(width) * u64::from(height) * TEXEL_BYTES;
-    // Once for the map, and once for what is made of it: its halves, weighted by solid angle.
+    // Counted twice: the map, and its solid-angle-weighted mip levels.
     let at = format!("environment, {width}×{height}");
     options.memory.keep(2 * map_bytes).map_err(over(at))?;
     options.memory.free(map_bytes);
@@ -91,8 +91,7 @@ fn load(
     let cleaning = clean(&mut texels);
     let mut warnings = cleaning.warnings(&name, texels.len());
     if u64::from(width) != 2 * u64::from(height) {
-        warnings
-            .push(format!("{name}: {width}×{height} is not twice as wide as high; taken for a whole sphere anyway"));
+        warnings.push(format!("{name}: {width}×{height} is not twice as wide as high; interpreted as a full sphere"));
     }
     report(progress, path, step(2))?;
     Ok(Environment { name, map: EquirectMap::new(width, height, texels), sun: None, filtered: None, warnings })

@@ -1,4 +1,4 @@
-//! The levels of an environment map as half floats, ready for the GPU.
+//! Mip levels of an environment map as half floats for the GPU.
 
 use std::borrow::Cow;
 
@@ -22,12 +22,11 @@ pub struct RadianceLevel {
 }
 
 impl EquirectMap {
-    /// The full chain of levels down to 1 × 1, this map first.
+    /// Returns the full mip chain down to 1 × 1, this map first.
     ///
-    /// Each level averages the radiance that it covers by solid angle, so the rows at the poles,
-    /// which are drawn out, do not outweigh the horizon: the single texel of the last level is the
-    /// average over the sphere. Averages are taken in f32 before values are cut to the range of half
-    /// floats, so a sun that is cut in the first level keeps its energy in the others.
+    /// Each level averages radiance by solid angle, so that stretched rows at the poles are not overweighted. The
+    /// single texel of the last level is the average over the sphere. Averages are computed in f32 and clamped to half
+    /// floats afterwards. A sun that is clamped in the first level thus keeps its energy in the others.
     #[must_use]
     pub fn radiance_levels(&self) -> Vec<RadianceLevel> {
         let mut working = self.weighted();
@@ -39,9 +38,9 @@ impl EquirectMap {
         levels
     }
 
-    /// The map, or the first of its halves that is at most `max_width` texels wide and half as high;
-    /// averaged by solid angle, in f32. The average over the sphere stays what it was, exactly where sizes
-    /// halve without a rest.
+    /// Returns the map, or the first of its mip levels of at most `max_width` × `max_width / 2` texels. Levels are
+    /// averaged by solid angle in f32. The average over the sphere is preserved, exactly where sizes halve without
+    /// remainder.
     #[must_use]
     pub fn reduced(&self, max_width: u32) -> Cow<'_, Self> {
         let (max_width, max_height) = (max_width.max(1) as usize, (max_width as usize / 2).max(1));
@@ -56,8 +55,7 @@ impl EquirectMap {
         Cow::Owned(Self::new(working.width as u32, working.height as u32, texels))
     }
 
-    /// Radiance times the solid angle of its row, relative to the equator; the weight stands in the
-    /// place of alpha.
+    /// Returns radiance times the solid angle of its row, relative to the equator; alpha holds the weight.
     fn weighted(&self) -> FloatLevel {
         let height = f64::from(self.height());
         let edge = |y: u32| (f64::from(y) / height * std::f64::consts::PI).cos();
@@ -110,7 +108,7 @@ mod tests {
 
     #[test]
     fn reducing_keeps_the_average_and_small_maps() {
-        // Odd sizes split rows, whose area is not even in their height.
+        // Odd sizes split rows, whose solid angle is not uniform over their height.
         for (width, into, bound) in [(256, (64, 32), 1e-6), (300, (37, 18), 2e-3)] {
             let radiance = |d: DVec3| DVec3::new(1.0, 1.0 + d.y, d.x.max(0.0) * 8.0);
             let map = EquirectMap::from_fn(width, width / 2, radiance);
@@ -122,17 +120,17 @@ mod tests {
         }
     }
 
-    /// A texel beyond the range of half floats is cut, the levels that average it are not.
+    /// A texel beyond the half-float range is clamped; the averages in coarser levels are not.
     #[test]
     fn energy_survives_the_cut() {
         let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; 8 * 4];
         texels[8] = [1e6, 1e6, 1e6, 1.0];
         let levels = EquirectMap::new(8, 4, texels).radiance_levels();
         assert_eq!(levels[0].rgba16f[8 * 4].to_f32(), F16_MAX);
-        // The row below the pole weighs (cos 45° − cos 90°) against (1 − cos 45°) for the first, and
-        // one of two texels a row is lit: 1e6 / 2 · 0.7071. That is cut again.
+        // The row below the pole weighs (cos 45° − cos 90°), the first (1 − cos 45°); one of two texels a row is lit.
+        // The average is 1e6 / 2 · 0.7071, which is clamped too.
         assert_eq!(levels[1].rgba16f[0].to_f32(), F16_MAX);
-        // An eighth of a sphere's share: 1e6 / 8 · 0.7071 / 2 = 44194.
+        // An eighth of a sphere: 1e6 / 8 · 0.7071 / 2 = 44194.
         let last = levels[3].rgba16f[0].to_f32();
         assert!((last / 44_194.0 - 1.0).abs() < 1e-3, "{last}");
         assert!(levels.iter().flat_map(|l| &l.rgba16f).all(|v| v.is_finite()));

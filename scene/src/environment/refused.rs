@@ -1,11 +1,11 @@
-//! Errors of decoders as those of loading an environment.
+//! Conversion of decoder errors to environment loading errors.
 
 use std::path::Path;
 
 use crate::codec::CodecError;
 use crate::error::{SceneError, Unsupported};
 
-/// An error of a decoder as one of loading.
+/// Converts a decoder error to a loading error.
 pub(super) fn refused(path: &Path, error: CodecError) -> SceneError {
     let file = path.to_path_buf();
     match error {

@@ -8,7 +8,7 @@ use super::sh_project;
 use super::sh_window::ShWindow;
 use crate::color::luminance_from_rec709;
 
-/// How many bands irradiance keeps. Four would equal three: the cosine removes the fourth.
+/// Number of spherical harmonics bands for irradiance. A fourth band would add nothing, since the cosine lobe has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShBands {
@@ -22,7 +22,7 @@ pub enum ShBands {
 }
 
 impl ShBands {
-    /// The number of bands: 2, 3 or 5.
+    /// Returns the number of bands: 2, 3 or 5.
     #[must_use]
     pub fn count(self) -> usize {
         match self {
@@ -32,14 +32,14 @@ impl ShBands {
         }
     }
 
-    /// The number of coefficients: 4, 9 or 25.
+    /// Returns the number of coefficients: 4, 9 or 25.
     #[must_use]
     pub fn coefficients(self) -> usize {
         self.count() * self.count()
     }
 }
 
-/// Radiance as coefficients of the orthonormal real basis, one linear Rec.709 color each.
+/// Radiance in spherical harmonics: coefficients of the orthonormal real basis, one linear Rec.709 color each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sh {
     bands: ShBands,
@@ -47,10 +47,9 @@ pub struct Sh {
 }
 
 impl Sh {
-    /// Projects a map whose texels are patches of one radiance each: ∫ radiance · Y_lm over the
-    /// sphere, in f64. Exact but for the sines of odd frequencies near the poles, which err with the
-    /// sixth power of a texel's height; a constant map gives its constant and nothing else, whatever
-    /// its size.
+    /// Projects a map with piecewise constant texels: ∫ radiance · Y_lm over the sphere, in f64. Exact except for odd
+    /// sine powers near the poles, whose error falls with the sixth power of the texel height. A constant map of any
+    /// size yields the constant alone.
     #[must_use]
     pub fn project(map: &EquirectMap, bands: ShBands) -> Self {
         let mut radiance = sh_project::integrate(map, bands.coefficients());
@@ -60,7 +59,7 @@ impl Sh {
         Self { bands, radiance }
     }
 
-    /// The same with its bands weakened.
+    /// Returns these coefficients attenuated by a window.
     #[must_use]
     pub fn windowed(&self, window: ShWindow) -> Self {
         let bands = self.bands.count();
@@ -68,29 +67,30 @@ impl Sh {
         Self { bands: self.bands, radiance: radiance.map(|(i, c)| *c * window.factor(band_of(i), bands)).collect() }
     }
 
-    /// Where most light comes from: the unit vector of the luminance's first moment. `None` for light
-    /// that comes evenly from all sides.
+    /// Returns the direction of most light: the unit vector of the luminance's first moment. `None` if the light is
+    /// uniform.
     #[must_use]
     pub fn dominant_direction(&self) -> Option<DVec3> {
         let moment = |i: usize| luminance_from_rec709(self.radiance[i]);
-        // In the order of the polynomials: y, z, x.
+        // Order of the polynomials: y, z, x.
         let vector = DVec3::new(moment(3), moment(1), moment(2));
         let even = luminance_from_rec709(self.radiance[0]);
         if vector.length() > 1e-4 * even { vector.try_normalize() } else { None }
     }
 
-    /// Radiance given as orthonormal coefficients, in the order of [`polynomials`].
+    /// Creates radiance from orthonormal coefficients, in the order of [`polynomials`].
     ///
     /// # Panics
     ///
-    /// When their number is not that of the bands.
+    /// If the number of coefficients does not match the bands.
     #[must_use]
     pub fn from_coefficients(bands: ShBands, radiance: Vec<DVec3>) -> Self {
         assert_eq!(radiance.len(), bands.coefficients());
         Self { bands, radiance }
     }
 
-    /// The harmonics of three bands whose [`irradiance_over_pi`](Self::irradiance_over_pi) this is: what Filament's files hold.
+    /// Creates three bands from their [`irradiance_over_pi`](Self::irradiance_over_pi), the form stored in Filament's
+    /// files.
     #[must_use]
     pub fn from_irradiance_over_pi(factors: [[f32; 3]; 9]) -> Self {
         let scale = scale();
@@ -99,24 +99,24 @@ impl Sh {
         Self { bands: ShBands::Three, radiance: factors.into_iter().enumerate().map(radiance).collect() }
     }
 
-    /// How many bands there are.
+    /// Returns the number of bands.
     #[must_use]
     pub fn bands(&self) -> ShBands {
         self.bands
     }
 
-    /// The orthonormal coefficients of radiance.
+    /// Returns the orthonormal coefficients of radiance.
     #[must_use]
     pub fn radiance_coefficients(&self) -> &[DVec3] {
         &self.radiance
     }
 
-    /// Irradiance divided by π, as factors of the plain polynomials: a shader computes
-    /// `max(Σ cᵢ pᵢ(n), 0)` and multiplies with the albedo of a Lambert surface. For a constant
-    /// radiance L the first is L and the others are zero.
+    /// Returns irradiance divided by π as coefficients of unnormalized polynomials. A shader computes `max(Σ cᵢ pᵢ(n),
+    /// 0)` and multiplies by the albedo of a Lambertian surface. For constant radiance L the first coefficient is L and
+    /// the others are zero.
     ///
-    /// With three bands this is the form Filament stores: radiance · K · {1, 2/3, 1/4} · K for 1; y,
-    /// z, x; xy, yz, 3z²−1, zx, x²−y².
+    /// With three bands this is Filament's form, radiance · K · {1, 2/3, 1/4} · K. The order of the polynomials is 1;
+    /// y, z, x; xy, yz, 3z²−1, zx, x²−y².
     #[must_use]
     pub fn irradiance_over_pi(&self) -> Vec<[f32; 3]> {
         let scale = scale();
@@ -127,8 +127,8 @@ impl Sh {
             .collect()
     }
 
-    /// The same without the fourth band, whose factors are zero: bands 0 to 2, then 4, as
-    /// `irradiance_sh5` of `wgsl/lib/sh.wgsl` takes them. Bands that are not there are zero; w is 0.
+    /// Returns irradiance divided by π for `irradiance_sh5` in `wgsl/lib/sh.wgsl`: coefficients of bands 0 to 2, then
+    /// of band 4. The fourth band is omitted because its coefficients are zero. Missing bands and w are zero.
     #[must_use]
     pub fn irradiance_coefficients(&self) -> [Vec4; 18] {
         let factors = self.irradiance_over_pi();
@@ -138,7 +138,7 @@ impl Sh {
         })
     }
 
-    /// Irradiance divided by π for a unit normal, in f64 and not clamped.
+    /// Returns irradiance divided by π for a unit normal, in f64 and not clamped.
     #[must_use]
     pub fn irradiance_over_pi_at(&self, normal: DVec3) -> DVec3 {
         let scale = scale();

@@ -1,14 +1,14 @@
-//! Real spherical harmonics to the fifth band, as polynomials in a unit direction.
+//! Real spherical harmonics up to the fifth band, as polynomials of a unit direction.
 //!
-//! Y_lm = K_lm · p_lm(x, y, z) with polar axis z and all signs positive; index l² + l + m. Bands 0 to
-//! 2 come in the order in which Filament's shaders evaluate them: 1; y, z, x; xy, yz, 3z²−1, zx,
-//! x²−y². Polynomials and factors: Sloan, "Stupid Spherical Harmonics Tricks", 2008, appendix A2.
+//! Y_lm = K_lm · p_lm(x, y, z) with polar axis z and all signs positive; index l² + l + m. Bands 0 to 2 are in the
+//! evaluation order of Filament's shaders: 1; y, z, x; xy, yz, 3z²−1, zx, x²−y². Polynomials and factors: Sloan,
+//! "Stupid Spherical Harmonics Tricks", 2008, appendix A2.
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
 
-/// The 25 polynomials p_lm of a unit direction.
+/// Returns the 25 polynomials p_lm of a unit direction.
 #[must_use]
 pub fn polynomials(d: DVec3) -> [f64; 25] {
     let (x, y, z) = (d.x, d.y, d.z);
@@ -42,7 +42,7 @@ pub fn polynomials(d: DVec3) -> [f64; 25] {
     ]
 }
 
-/// The factors K_lm that make the basis orthonormal over the sphere.
+/// Returns the factors K_lm that make the basis orthonormal over the sphere.
 #[must_use]
 pub fn scale() -> [f64; 25] {
     let k = |square: f64| (square / PI).sqrt();
@@ -75,15 +75,15 @@ pub fn scale() -> [f64; 25] {
     ]
 }
 
-/// The band l of a coefficient index.
+/// Returns the band l of a coefficient index.
 #[must_use]
 pub(super) fn band_of(index: usize) -> usize {
     index.isqrt()
 }
 
-/// What convolution with the clamped cosine multiplies band `l` with, divided by π: 1, 2/3, 1/4, 0,
-/// −1/24 (Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps",
-/// 2001). The fourth band vanishes.
+/// Returns the factor of band `l` under convolution with the clamped cosine, divided by π: 1, 2/3, 1/4, 0, −1/24. The
+/// fourth band vanishes (Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps",
+/// 2001).
 #[must_use]
 pub(super) fn cosine_over_pi(l: usize) -> f64 {
     [1.0, 2.0 / 3.0, 0.25, 0.0, -1.0 / 24.0][l]

@@ -1,11 +1,9 @@
-//! The projection of a map onto spherical harmonics, exact for what a map is: rows of texels of one
-//! radiance each.
+//! Projection of a map onto spherical harmonics, exact for texels of constant radiance.
 //!
-//! Around a row the polynomials are trigonometric ones of degree 4 in the azimuth, so five Fourier
-//! coefficients of the row say all about it; across its height Gauss–Legendre quadrature of three
-//! points in the cosine is exact for polynomials of degree 5. Taking each texel at its center instead
-//! errs by 2 % on a map of 32 rows and makes nonsense of one of two, which is all that a uniform
-//! environment needs.
+//! Along a row the polynomials are trigonometric with degree 4 in the azimuth, so five Fourier coefficients describe
+//! the row. Across its height, three-point Gauss–Legendre quadrature in the cosine is exact for polynomials of degree
+//! 5. Sampling texel centers instead has an error of 2 % on a map of 32 rows. It fails on the two rows of a uniform
+//! environment.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,23 +12,23 @@ use glam::DVec3;
 use super::equirect::EquirectMap;
 use super::sh_basis::polynomials;
 
-/// Highest frequency around a row: that of band 4.
+/// Maximum frequency along a row: that of band 4.
 const DEGREE: usize = 4;
-/// The constant, then cosine and sine of each frequency.
+/// Number of Fourier terms: the constant, then cosine and sine of each frequency.
 const TERMS: usize = 2 * DEGREE + 1;
-/// Azimuths at which polynomials are sampled for their Fourier terms; more than twice the degree.
+/// Number of azimuths at which polynomials are sampled for their Fourier terms; more than twice the degree.
 const AZIMUTHS: usize = 16;
 
 /// Nodes and weights over [-1, 1].
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
-/// ∫ radiance · p_i over the sphere for the first `count` polynomials.
+/// Returns ∫ radiance · p_i over the sphere for the first `count` polynomials.
 pub(super) fn integrate(map: &EquirectMap, count: usize) -> Vec<DVec3> {
     let width = map.width();
     let step = TAU / f64::from(width);
     let columns: Vec<[f64; TERMS]> = (0..width).map(|x| fourier_basis((f64::from(x) + 0.5) * step - PI)).collect();
-    // The mean of a wave over a texel, over its value at the center.
+    // Mean of a wave over a texel, relative to its value at the center.
     let mean: [f64; TERMS] = std::array::from_fn(|term| sinc(frequency(term) * 0.5 * step));
     let mut sums = vec![DVec3::ZERO; count];
     for (y, row) in (0..).zip(map.texels().chunks_exact(width as usize)) {
@@ -57,7 +55,7 @@ pub(super) fn integrate(map: &EquirectMap, count: usize) -> Vec<DVec3> {
     sums
 }
 
-/// 1, cos φ, sin φ, cos 2φ, …
+/// Returns 1, cos φ, sin φ, cos 2φ, …
 fn fourier_basis(azimuth: f64) -> [f64; TERMS] {
     std::array::from_fn(|term| match term {
         0 => 1.0,
@@ -74,7 +72,7 @@ fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
 }
 
-/// The Fourier terms of each polynomial around the circle of directions with this y.
+/// Returns the Fourier terms of each polynomial on the circle of directions with this y.
 fn polynomial_spectra(cos: f64) -> [[f64; TERMS]; 25] {
     let sin = (1.0 - cos * cos).max(0.0).sqrt();
     let mut spectra = [[0.0; TERMS]; 25];
@@ -88,7 +86,7 @@ fn polynomial_spectra(cos: f64) -> [[f64; TERMS]; 25] {
             }
         }
     }
-    // The mean square of a wave is a half, that of the constant one.
+    // The mean square of a wave is 1/2, that of the constant is 1.
     spectra.iter_mut().for_each(|s| s[1..].iter_mut().for_each(|t| *t *= 2.0));
     spectra
 }
@@ -98,21 +96,21 @@ mod tests {
     use super::super::sh_basis::scale;
     use super::*;
 
-    /// Even a map of two rows gives a constant radiance its constant and nothing else.
+    /// A constant radiance gives one coefficient even on a map of two rows.
     #[test]
     fn a_uniform_map_of_any_size_has_one_coefficient() {
         for (width, height) in [(1, 1), (4, 2), (5, 3), (64, 32)] {
             let map = EquirectMap::from_fn(width, height, |_| DVec3::splat(3.0));
             let sums = integrate(&map, 25);
             assert!((sums[0].x - 12.0 * PI).abs() < 1e-10, "{width}×{height}");
-            // Texels hold the same number, so waves around the sphere cancel to rounding.
+            // Waves around the sphere cancel up to rounding, since all texels are equal.
             for (i, sum) in sums.iter().enumerate().skip(1) {
                 assert!(sum.length() < 1e-10, "{width}×{height} {i}: {sum}");
             }
         }
     }
 
-    /// Against the sum over a hundred points in each texel.
+    /// Compares with the sum over a hundred points in each texel.
     #[test]
     fn it_integrates_what_texels_hold() {
         let (width, height) = (9, 7);

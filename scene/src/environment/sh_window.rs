@@ -1,19 +1,19 @@
-//! Windows: weaker high bands against ringing, at the price of a blurred irradiance.
+//! Windows against ringing: attenuate high bands at the price of blurred irradiance.
 //!
-//! None is the default. Measured on a sun in an otherwise dark sky with three bands, clamping at zero
-//! costs 3 % of energy, while a window that stops the ringing raises the largest error from 9 % to 14 %
-//! or more; taking the sun out of the map beats both ([`extract_sun`](super::Environment::extract_sun)).
+//! The default is no window. For a sun in a dark sky with three bands, clamping at zero loses 3 % of energy. A window
+//! that stops ringing raises the maximum error from 9 % to at least 14 %. Extracting the sun
+//! ([`extract_sun`](super::Environment::extract_sun)) is better than both.
 
 use std::f64::consts::PI;
 
-/// How bands are weakened.
+/// Attenuation of spherical harmonics bands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ShWindow {
-    /// Not at all.
+    /// No attenuation.
     #[default]
     None,
-    /// ½ (1 + cos(πl/n)) for n bands: the strongest of the three, and still not free of ringing.
+    /// ½ (1 + cos(πl/n)) for n bands: the strongest of the three, but not free of ringing.
     Hann,
     /// Lanczos' sin(πl/n) / (πl/n).
     Sinc,
@@ -26,7 +26,7 @@ pub enum ShWindow {
 }
 
 impl ShWindow {
-    /// The factor on band `l` of `bands`.
+    /// Returns the factor on band `l` of `bands`.
     #[must_use]
     pub fn factor(self, l: usize, bands: usize) -> f64 {
         let (l, x) = (l as f64, PI * l as f64 / bands as f64);

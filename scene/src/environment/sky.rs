@@ -1,14 +1,12 @@
 //! A clear sky by Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", SIGGRAPH
 //! 1999: chromaticity and luminance by Perez's five-parameter distribution.
 //!
-//! The shape and the colors are the paper's. The absolute scale is not: its zenith luminance makes a
-//! clear sky about twice as bright as measured, so luminance is scaled to lay on level ground what
-//! IES RP-21 states for a clear sky, the same source as the sun's illuminance. Sun and sky thus are in
-//! proportion, in nits and lux.
+//! Shape and colors follow the paper. Its zenith luminance makes a clear sky about twice as bright as measured.
+//! Luminance is therefore scaled to the horizontal illuminance of a clear sky in IES RP-21, which also defines the
+//! sun's illuminance. Sun and sky are thus consistent, in nits and lux.
 //!
-//! Chosen over a gradient for following the sun, and over Hosek–Wilkie (2012) for needing no tables.
-//! Its known weakness, a horizon too bright in thick haze, lies outside the range of turbidity
-//! accepted here.
+//! Unlike a gradient the model follows the sun, and unlike Hosek–Wilkie (2012) it needs no tables. Its known weakness,
+//! an overly bright horizon in thick haze, lies outside of the accepted range of turbidity.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -21,19 +19,19 @@ use crate::color::{luminance_from_rec709, rec709_from_xyz};
 use crate::error::SceneError;
 use crate::light::LightKind;
 
-/// What a clear sky depends on.
+/// Parameters of a clear sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
-    /// Towards the sun; any length but zero, above the horizon (y > 0).
+    /// Direction toward the sun; any length but zero, above the horizon (y > 0).
     pub toward_sun: DVec3,
     /// Haze: 2 is very clear, 3 a normal clear day, 6 hazy.
     pub turbidity: f64,
-    /// The diffuse albedo of the ground that shows below the horizon, linear Rec.709 in 0…1.
+    /// Diffuse albedo of the ground below the horizon, linear Rec.709 in 0…1.
     pub ground_albedo: DVec3,
 }
 
 impl Default for Sky {
-    /// A clear afternoon, the sun 40° high over the right shoulder of the orbit camera.
+    /// Returns a clear afternoon: the sun is 40° high, over the right shoulder of the orbit camera.
     fn default() -> Self {
         let (elevation, azimuth) = (40.0_f64.to_radians(), 75.0_f64.to_radians());
         Self {
@@ -45,12 +43,12 @@ impl Default for Sky {
 }
 
 impl Sky {
-    /// The sky as an environment: a map of `width` × `width / 2` texels without the sun's disc, and
-    /// the sun as a light.
+    /// Returns the sky as an environment: a map of `width` × `width / 2` texels without the sun's disc, and the sun as
+    /// a light.
     ///
     /// # Errors
     ///
-    /// When a parameter is outside its range; the message names it.
+    /// Fails if a parameter is out of range; the message names it.
     pub fn environment(&self, width: u32) -> Result<Environment, SceneError> {
         let model = SkyModel::new(self)?;
         if !(8..=4096).contains(&width) {
@@ -70,24 +68,24 @@ fn parameter(parameter: &'static str, value: impl Into<f64>, range: &'static str
     SceneError::Parameter { parameter, value: value.into(), range }
 }
 
-/// A sky with its coefficients worked out, to be evaluated per direction.
+/// Sky with precomputed coefficients, evaluated per direction.
 #[derive(Clone, Debug)]
 pub struct SkyModel {
     toward_sun: DVec3,
     /// Perez's A…E for luminance Y and chromaticities x, y.
     perez: [[f64; 5]; 3],
-    /// The zenith's Y (in nits once scaled), x and y, each divided by its distribution there.
+    /// Zenith values of Y (in nits after scaling), x and y, each divided by the distribution there.
     zenith: [f64; 3],
     /// Radiance of the ground in nits.
     ground: DVec3,
 }
 
 impl SkyModel {
-    /// Works out the coefficients and, by integration, the scale and the light on the ground.
+    /// Computes the coefficients and, by integration, the scale and the illuminance of the ground.
     ///
     /// # Errors
     ///
-    /// When a parameter is outside its range; the message names it.
+    /// Fails if a parameter is out of range; the message names it.
     pub fn new(sky: &Sky) -> Result<Self, SceneError> {
         let toward_sun = sky
             .toward_sun
@@ -145,8 +143,8 @@ impl SkyModel {
         Ok(model)
     }
 
-    /// Radiance from a unit direction in nits, linear Rec.709, never negative, without the sun's
-    /// disc. Below the horizon: the ground, lit by sky and sun.
+    /// Returns the radiance from a unit direction in nits, linear Rec.709, never negative, without the sun's disc.
+    /// Below the horizon this is the ground, lit by sky and sun.
     #[must_use]
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         if direction.y <= 0.0 {
@@ -159,12 +157,12 @@ impl SkyModel {
         let xyz =
             DVec3::new(chromaticity.x / chromaticity.y, 1.0, (1.0 - chromaticity.x - chromaticity.y) / chromaticity.y)
                 * luminance;
-        // Deep blues lie a little outside Rec.709.
+        // Deep blues are slightly outside of Rec.709.
         rec709_from_xyz(xyz).max(DVec3::ZERO)
     }
 
-    /// The sky's irradiance on level ground per channel, the sun apart: midpoint rule over elevation
-    /// and azimuth, within 1 % at this step.
+    /// Returns the sky's irradiance on level ground per channel, without the sun. Midpoint rule over elevation and
+    /// azimuth, within 1 % at this step.
     fn horizontal_irradiance(&self) -> DVec3 {
         const ELEVATIONS: u32 = 64;
         const AZIMUTHS: u32 = 128;
@@ -181,7 +179,7 @@ impl SkyModel {
     }
 }
 
-/// Perez's distribution for a direction of this elevation sine and angle to the sun.
+/// Evaluates Perez's distribution for the sine of an elevation and an angle to the sun.
 fn distribution(c: &[f64; 5], sin_elevation: f64, sun_angle: f64) -> f64 {
     let [a, b, c, d, e] = *c;
     let cos_sun = sun_angle.cos();
@@ -189,13 +187,13 @@ fn distribution(c: &[f64; 5], sin_elevation: f64, sun_angle: f64) -> f64 {
     (1.0 + a * (b / sin_elevation.max(1e-6)).exp()) * (1.0 + c * (d * sun_angle).exp() + e * cos_sun * cos_sun)
 }
 
-/// Zenith luminance in thousands of nits (appendix A.2 of the paper).
+/// Returns the zenith luminance in thousands of nits (appendix A.2 of the paper).
 fn zenith_luminance_knits(t: f64, sun_zenith: f64) -> f64 {
     let chi = (4.0 / 9.0 - t / 120.0) * (PI - 2.0 * sun_zenith);
     (4.0453 * t - 4.9710) * chi.tan() - 0.2155 * t + 2.4192
 }
 
-/// Rows for T², T, 1; columns for the sun's zenith angle cubed, squared, plain, and 1.
+/// Rows for T², T, 1; columns for the sun's zenith angle cubed, squared, linear, and 1.
 const ZENITH_X: [[f64; 4]; 3] =
     [[0.00166, -0.00375, 0.00209, 0.0], [-0.02903, 0.06377, -0.03202, 0.00394], [0.11693, -0.21196, 0.06052, 0.25886]];
 const ZENITH_Y: [[f64; 4]; 3] =

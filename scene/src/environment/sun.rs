@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::color::luminance_from_rec709;
 use crate::light::{Light, LightKind};
 
-/// Half the angle the sun subtends at its mean distance, in radians (0.2666°).
+/// Mean angular radius of the sun in radians (0.2666°).
 pub const SOLAR_ANGULAR_RADIUS_RAD: f64 = 0.004_652;
 
 /// The sun's illuminance above the atmosphere in lux (IES RP-21, "Recommended Practice for the
@@ -17,28 +17,28 @@ const SOLAR_CONSTANT_LUX: f64 = 127_500.0;
 /// Extinction of illuminance per air mass in clear weather (IES RP-21).
 const CLEAR_EXTINCTION: f64 = 0.21;
 
-/// How many times the zenith's air the light crosses at this zenith angle (Kasten and Young,
-/// "Revised optical air mass tables", Applied Optics 28, 1989). 1 at the zenith, about 38 at the
-/// horizon.
+/// Returns the relative air mass at a zenith angle: 1 at the zenith, about 38 at the horizon.
+///
+/// Kasten and Young, "Revised optical air mass tables", Applied Optics 28, 1989.
 pub(super) fn air_mass(zenith_rad: f64) -> f64 {
     let zenith_deg = zenith_rad.min(PI / 2.0).to_degrees();
     1.0 / (zenith_rad.min(PI / 2.0).cos() + 0.505_72 * (96.079_95 - zenith_deg).powf(-1.6364))
 }
 
-/// What a clear sky without the sun lays on level ground, in lux: 0.8 + 15.5 √sin(elevation) klx (IES
+/// Returns the illuminance of level ground by a clear sky without the sun, in lux: 0.8 + 15.5 √sin(elevation) klx (IES
 /// RP-21).
 pub(super) fn clear_sky_illuminance_lux(sin_elevation: f64) -> f64 {
     1000.0 * (0.8 + 15.5 * sin_elevation.max(0.0).sqrt())
 }
 
-/// The sun as a light: illuminance on a surface facing it, after a clear atmosphere of the given
-/// turbidity, with the color that the air leaves it. `None` below the horizon.
+/// Returns the sun as a light, attenuated and colored by a clear atmosphere of this turbidity. `None` below the
+/// horizon.
 ///
-/// `toward_sun` is a unit vector. The illuminance follows the extinction above (95 klx with the sun
-/// at 45°, 103 klx at the zenith). The color is the transmittance of Rayleigh scattering and haze at
-/// one wavelength a channel (680, 550, 440 nm; Preetham, Shirley and Smits, "A Practical Analytic
-/// Model for Daylight", 1999, appendix A.1), scaled to a luminance of 1: a simplification that is
-/// right in hue and leaves the illuminance exact.
+/// `toward_sun` is a unit vector. The illuminance uses the extinction of IES RP-21: 95 klx with the sun at 45°, 103 klx
+/// at the zenith. The color is the transmittance of Rayleigh scattering and haze at one wavelength per channel: 680,
+/// 550 and 440 nm. It is scaled to a luminance of 1, so the hue is approximate and the illuminance exact.
+///
+/// Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", 1999, appendix A.1.
 #[must_use]
 pub fn sun_light(toward_sun: DVec3, turbidity: f64) -> Option<Light> {
     if toward_sun.y <= 0.0 {

@@ -1,4 +1,4 @@
-//! Environments against closed forms, brute-force integration, and real and damaged files.
+//! Environments compared with closed forms and brute-force integration; real and damaged files.
 
 mod extract;
 mod files;

@@ -1,12 +1,12 @@
-//! What can be wrong with a camera.
+//! Errors of cameras.
 
-/// Why a camera cannot look from one point to another.
+/// Error of pointing a camera at a target.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LookAtError {
     /// A coordinate is infinite or NaN.
     #[error("a coordinate is not finite")]
     NotFinite,
-    /// There is no direction from a point to itself.
+    /// Eye and target coincide.
     #[error("eye and target coincide")]
     Coincide,
 }
@@ -17,32 +17,32 @@ impl std::fmt::Debug for LookAtError {
     }
 }
 
-/// Why a camera written as text, `NAME`, `orbit`, or `EX,EY,EZ:TX,TY,TZ:FOVY`, is none.
+/// Error of parsing a camera, `NAME`, `orbit`, or `EX,EY,EZ:TX,TY,TZ:FOVY`.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CameraTextError {
-    /// There is no text.
+    /// The text is empty.
     #[error("the name is empty")]
     EmptyName,
-    /// There are not three parts between colons.
+    /// The text does not have three parts separated by colons.
     #[error("{found} parts between colons, not 3")]
     Parts {
-        /// How many there are.
+        /// Number of parts.
         found: usize,
     },
-    /// A point has not three coordinates.
+    /// A point does not have three coordinates.
     #[error("{part}: {found} coordinates, not 3")]
     Coordinates {
         /// `eye` or `target`.
         part: &'static str,
-        /// How many there are.
+        /// Number of coordinates.
         found: usize,
     },
-    /// A number does not parse.
+    /// A number cannot be parsed.
     #[error("{part}: {text:?} is not a number")]
     Number {
         /// `eye`, `target` or `field of view`.
         part: &'static str,
-        /// The text in place of the number.
+        /// Text that is not a number.
         text: String,
     },
     /// A number is infinite or NaN.
@@ -53,10 +53,10 @@ pub enum CameraTextError {
         /// The text of the number.
         text: String,
     },
-    /// The field of view is that of no camera.
+    /// The field of view is out of range.
     #[error("the field of view must lie between 0 and 180 degrees")]
     FieldOfView,
-    /// The points give no view.
+    /// The points do not define a view.
     #[error(transparent)]
     LookAt(#[from] LookAtError),
 }

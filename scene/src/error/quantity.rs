@@ -1,8 +1,8 @@
-//! What may be too large, with its unit.
+//! Limited quantities and their units.
 
 use std::fmt;
 
-/// A number that has a limit.
+/// A quantity with a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
@@ -18,9 +18,9 @@ pub enum Quantity {
     Vertices,
     /// Indices of a scene.
     Indices,
-    /// Width or height of a picture, in texels.
+    /// Width or height of an image, in texels.
     Side,
-    /// Bytes of all data of one kind: `positions`, `materials`.
+    /// Bytes of a GPU buffer for one kind of data: `positions`, `materials`.
     BufferBytes(&'static str),
 }
 

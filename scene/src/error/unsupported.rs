@@ -1,39 +1,37 @@
-//! What files may ask for and do not get.
+//! Unsupported features of files.
 
 use std::fmt;
 
 use crate::codec::FileKind;
 
-/// Something that a valid file asks for and that is not read. `Display` says what to do instead, where something can be
-/// done.
+/// A feature of a valid file that is not supported. `Display` suggests an alternative, if there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Unsupported {
-    /// Another version of glTF than 2.
+    /// A glTF version other than 2.
     GltfVersion(String),
-    /// Extensions of glTF that the file requires, by name.
+    /// Required glTF extensions that are not supported, by name.
     Extensions(Vec<String>),
-    /// A URI that is neither data nor a relative path.
+    /// A URI that is neither a data URI nor a relative path.
     UriScheme {
-        /// What has the URI: `buffer 0`.
+        /// Object with the URI: `buffer 0`.
         at: String,
-        /// Its scheme: `https`.
+        /// Scheme of the URI: `https`.
         scheme: String,
     },
-    /// A texture that is neither PNG, JPEG, WebP nor KTX2, or of a format that this build does not read.
+    /// A texture that is not PNG, JPEG, WebP or KTX2, or whose format is disabled in this build.
     Image {
-        /// Which one: `image 3`.
+        /// Image in the file: `image 3`.
         at: String,
-        /// What it is.
+        /// Kind of the image file.
         kind: FileKind,
     },
-    /// An environment that is neither Radiance, OpenEXR nor a Khronos texture, or of a format that this build does not
-    /// read.
+    /// An environment that is not Radiance, OpenEXR or a Khronos texture, or whose format is disabled in this build.
     Environment {
-        /// What it is, if that is known.
+        /// Kind of the file, if known.
         kind: Option<FileKind>,
     },
-    /// A scene from a file, in a build without import.
+    /// A scene from a file, in a build without the feature `gltf`.
     Gltf,
 }
 

@@ -1,12 +1,12 @@
-//! A box with hard edges.
+//! Box with hard edges.
 
 use glam::{Vec2, Vec3};
 
 use crate::bounds::Aabb;
 use crate::mesh::Mesh;
 
-/// A box around the origin with these half edge lengths in meters. Each face shows the texture
-/// once, upright on the sides.
+/// Returns a box around the origin with these half edge lengths in meters. Each face shows the texture once, upright on
+/// the sides.
 #[must_use]
 pub fn cuboid(half: Vec3) -> Mesh {
     // The normal of each face and the direction in which u grows on it.

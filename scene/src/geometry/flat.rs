@@ -1,5 +1,5 @@
-//! Normals from triangles: flat ones for meshes without any (glTF 2.0, section 3.7.2.1), smooth ones in place of unusable
-//! ones.
+//! Normals from triangles: flat ones for meshes without normals (glTF 2.0, section 3.7.2.1), smooth ones to replace
+//! invalid normals.
 
 use std::collections::BTreeMap;
 
@@ -8,9 +8,8 @@ use glam::{DVec3, Vec3};
 use super::weld::split_by_key;
 use crate::mesh::Mesh;
 
-/// Gives each triangle the normal of its plane, splitting vertices where planes meet. Triangles
-/// without area have no plane and no pixels: they are removed, and their number is returned.
-/// Tangents, if any, belonged to other normals and are dropped.
+/// Gives each triangle its face normal, splitting vertices between planes. Degenerate triangles are removed, and their
+/// number is returned. Tangents are dropped, since they belong to other normals.
 pub(crate) fn make_flat(mesh: &mut Mesh) -> usize {
     let before = mesh.triangle_count();
     let mut indices = Vec::with_capacity(mesh.indices.len());
@@ -31,8 +30,8 @@ pub(crate) fn make_flat(mesh: &mut Mesh) -> usize {
     before - mesh.triangle_count()
 }
 
-/// Normalizes the normals of a mesh. One that is not finite or shorter than 1e-6 is recomputed from the triangles at its
-/// vertex, weighted by area; a vertex without area gets the normal +z. Returns the number of recomputed normals.
+/// Normalizes the normals of a mesh and returns the number of recomputed ones. A normal that is not finite or shorter
+/// than 1e-6 is recomputed from adjacent triangles, weighted by area. A vertex whose triangles have no area gets +z.
 pub(crate) fn repair_normals(mesh: &mut Mesh) -> usize {
     let unit = |normal: Vec3| {
         let (normal, length) = (normal.as_dvec3(), normal.as_dvec3().length());
@@ -48,7 +47,7 @@ pub(crate) fn repair_normals(mesh: &mut Mesh) -> usize {
     if bad.is_empty() {
         return 0;
     }
-    // Areas relative to the mesh's size neither vanish nor overflow.
+    // Areas relative to the mesh size neither vanish nor overflow.
     let size = mesh.bounds.half_extent().max_element().max(f64::MIN_POSITIVE);
     for corners in mesh.triangles() {
         let [a, b, c] = corners.map(|corner| mesh.positions[corner].as_dvec3() / size);
@@ -65,9 +64,9 @@ pub(crate) fn repair_normals(mesh: &mut Mesh) -> usize {
     bad.len()
 }
 
-/// The unit normal of a counter-clockwise triangle; `None` without area. Computed in f64 on edges
-/// scaled by their largest component, so that neither tiny nor huge triangles lose it. Zeros come
-/// out positive, so that equal normals have equal bits.
+/// Returns the unit normal of a counter-clockwise triangle; `None` if its area is zero. Computed in f64 with edges
+/// scaled by their largest component, which handles tiny and huge triangles. Zeros are positive, so that equal normals
+/// have equal bits.
 fn normal_of_triangle(p: [Vec3; 3]) -> Option<Vec3> {
     let [a, b, c] = p.map(|v| v.as_dvec3());
     let (u, v) = (b - a, c - a);

@@ -1,11 +1,10 @@
-//! Any tangent for a normal.
+//! Construction of a tangent from a normal.
 
 use glam::Vec3;
 
-/// A unit vector perpendicular to the unit vector `n`, continuous except at n = −z.
+/// Returns a unit vector perpendicular to the unit vector `n`, continuous except at n = −z.
 ///
-/// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017: the sign keeps the
-/// division away from zero.
+/// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017; the sign avoids a division by zero.
 #[must_use]
 pub fn tangent_of_normal(n: Vec3) -> Vec3 {
     let sign = 1.0_f32.copysign(n.z);

@@ -1,4 +1,4 @@
-//! Levels of detail: the same surface in fewer and fewer triangles.
+//! Levels of detail: a surface with successively fewer triangles.
 
 mod collapse;
 mod deviation;
@@ -16,21 +16,23 @@ use super::order::drawn_order;
 use crate::bounds::Aabb;
 use crate::mesh::{Mesh, MeshLevel};
 
-/// Meshes of fewer triangles have no levels.
+/// Minimum number of triangles of a mesh with levels of detail.
 const LEAST_TRIANGLES: usize = 128;
-/// Nor have meshes of more: what making them takes, up to a kilobyte and a half a vertex, no budget counts.
+/// Maximum number of triangles of a mesh with levels of detail. Simplification needs up to 1.5 KB per vertex, which the
+/// memory budget does not count.
 const MAX_TRIANGLES: usize = 1 << 22;
-/// The most levels of a mesh, beside the mesh itself.
+/// Maximum number of levels, excluding the mesh itself.
 const MAX_LEVELS: usize = 7;
-/// A level of more than so many times as many triangles as the one before is not made.
+/// Maximum ratio of a level's triangles to those of the previous level.
 const WORTH_IT: f64 = 0.8;
-/// Nor one that is farther from the mesh than so many times the mesh's radius.
+/// Maximum error of a level relative to the mesh radius.
 const MAX_ERROR: f64 = 0.1;
-/// Nor one of less than so many times the mesh's area: of leaves that go one by one the others are where they were.
+/// Minimum area of a level relative to the mesh. Meshes of many separate parts, such as leaves, would otherwise lose
+/// parts without a geometric error.
 const LEAST_AREA: f64 = 0.9;
 
-/// Levels of `mesh`, each of about half the triangles of the one before, with how far it is from the mesh. None of a mesh with less
-/// than 128 triangles or more than four million, or one whose vertices move.
+/// Returns levels of detail of `mesh` and their errors; each level has about half the triangles of the previous one.
+/// Empty for meshes of fewer than 128 or more than four million triangles, and for deforming meshes.
 #[must_use]
 pub fn levels_of_detail(mesh: &Mesh, read: ReadStreams) -> Vec<MeshLevel> {
     let mut levels: Vec<MeshLevel> = Vec::new();

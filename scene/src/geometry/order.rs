@@ -1,28 +1,30 @@
-//! Triangles and vertices in an order that a GPU draws faster.
+//! Triangle and vertex order for faster drawing.
 //!
-//! Vertices that were shaded a moment ago are found in a cache, so triangles that share them should follow each other; what faces
-//! outward should come first, so that it hides the rest; and vertices should lie in memory in the order of their use. Tipsify:
-//! P. Sander, D. Nehab, J. Barczak, "Fast Triangle Reordering for Vertex Locality and Reduced Overdraw", SIGGRAPH 2007.
+//! Triangles that share vertices follow each other, for the post-transform vertex cache. Parts that face outward come
+//! first, to reduce overdraw. Vertices are stored in the order of their use. Tipsify: P. Sander, D. Nehab, J. Barczak,
+//! "Fast Triangle Reordering for Vertex Locality and Reduced Overdraw", SIGGRAPH 2007.
 
 use glam::Vec3;
 
 use crate::mesh::Mesh;
 
-/// Vertices that the modeled cache holds, first in, first out: as many as the smallest of GPUs do.
+/// Size of the modeled FIFO vertex cache, as on the smallest GPUs.
 const CACHE: u32 = 16;
-/// A part is split off where it shades at most so many times as many vertices as one of its size would on the whole.
+/// Maximum increase of shaded vertices, relative to the average of the mesh, at which a part is split off.
 const PART_MORE: f64 = 1.05;
-/// Parts are sorted if that shades at most so many times as many vertices: what is left of the last part shades more.
+/// Maximum increase of shaded vertices of the whole mesh at which parts are sorted.
 const WHOLE_MORE: f64 = 1.1;
 
-/// How many vertices of `mesh` are shaded if the last 16 are kept: three a triangle at most, half a triangle at best for a large mesh.
+/// Returns the number of vertex shader invocations for `mesh` with a cache of 16 vertices. The maximum is three per
+/// triangle; the optimum for large meshes is half per triangle.
 #[must_use]
 pub fn shaded_vertices(mesh: &Mesh) -> usize {
     misses(&mesh.indices, &mut Cache::new(mesh.vertex_count()))
 }
 
-/// Orders the triangles of `mesh`, and its vertices by their first use, if fewer vertices are shaded for it; vertices that no triangle uses
-/// go then. Lines and points keep their order. The surface is the same; where triangles blend over or lie in one another, another may be the last.
+/// Reorders the triangles of `mesh`, and its vertices by first use, if this reduces vertex shader invocations. Unused
+/// vertices are then removed. Lines and points keep their order. The surface is unchanged, but blended or coplanar
+/// triangles may be drawn in another order.
 pub fn order_for_drawing(mesh: &mut Mesh) {
     if !mesh.has_area() {
         return;
@@ -35,7 +37,7 @@ pub fn order_for_drawing(mesh: &mut Mesh) {
     }
 }
 
-/// Triangles over the vertices of `mesh` in another order, if fewer vertices are shaded for it.
+/// Returns triangles over the vertices of `mesh` in another order, if this reduces vertex shader invocations.
 pub(super) fn drawn_order(mesh: &Mesh, indices: &[u32]) -> Vec<u32> {
     let count = mesh.vertex_count();
     let shaded = |indices: &[u32]| misses(indices, &mut Cache::new(count));
@@ -53,7 +55,7 @@ pub(super) fn drawn_order(mesh: &Mesh, indices: &[u32]) -> Vec<u32> {
     if fair { sorted } else { local }
 }
 
-/// A cache of vertices, first in, first out: when each went in, by the count of those that did.
+/// FIFO vertex cache; stores the insertion count at which each vertex was inserted.
 struct Cache {
     entered: Vec<u32>,
     clock: u32,
@@ -68,7 +70,7 @@ impl Cache {
         self.clock - self.entered[vertex as usize]
     }
 
-    /// Whether the vertex had to go in.
+    /// Returns true if the vertex was not in the cache, and inserts it.
     fn misses(&mut self, vertex: u32) -> bool {
         let missed = self.age(vertex) > CACHE;
         if missed {
@@ -78,7 +80,7 @@ impl Cache {
         missed
     }
 
-    /// Forgets all that is in it.
+    /// Empties the cache.
     fn clear(&mut self) {
         self.clock += CACHE + 1;
     }
@@ -88,7 +90,7 @@ fn misses(indices: &[u32], cache: &mut Cache) -> usize {
     indices.iter().filter(|vertex| cache.misses(**vertex)).count()
 }
 
-/// Indices with vertices numbered by first use, and the old number of each.
+/// Renumbers vertices by first use; returns the indices and the old number of each vertex.
 fn first_uses(indices: &[u32], vertices: usize) -> (Vec<u32>, Vec<u32>) {
     let (mut number, mut source) = (vec![u32::MAX; vertices], Vec::new());
     let of = |vertex: &u32| {
@@ -102,7 +104,7 @@ fn first_uses(indices: &[u32], vertices: usize) -> (Vec<u32>, Vec<u32>) {
     (indices.iter().map(of).collect(), source)
 }
 
-/// The triangles of each vertex, one vertex after the other.
+/// Triangles of each vertex, in one array.
 pub(super) struct Fans {
     first: Vec<u32>,
     triangles: Vec<u32>,
@@ -128,7 +130,8 @@ impl Fans {
     }
 }
 
-/// Indices in which triangles around one vertex follow each other, and the first triangles of parts that share no vertices in the cache.
+/// Returns indices in which triangles around a vertex follow each other, and the first triangles of parts that share no
+/// cached vertices.
 fn by_locality(indices: &[u32], vertices: usize) -> (Vec<u32>, Vec<usize>) {
     let fans = Fans::new(indices, vertices);
     let mut left: Vec<u32> = (0..vertices as u32).map(|vertex| fans.of(vertex).len() as u32).collect();
@@ -160,7 +163,7 @@ fn by_locality(indices: &[u32], vertices: usize) -> (Vec<u32>, Vec<usize>) {
                 cache.misses(*vertex);
             }
         }
-        // The oldest in the cache that is still there when its triangles are drawn; one with triangles that is not, if there is none.
+        // The oldest vertex that stays cached while its triangles are drawn; otherwise any vertex with triangles.
         let priority = |vertex: &u32| match cache.age(*vertex) {
             age if age + 2 * left[*vertex as usize] <= CACHE => age,
             _ => 0,
@@ -169,7 +172,7 @@ fn by_locality(indices: &[u32], vertices: usize) -> (Vec<u32>, Vec<usize>) {
     }
 }
 
-/// The last vertex used that still has triangles.
+/// Returns the last used vertex that still has triangles.
 fn lately_used(recent: &mut Vec<u32>, left: &[u32]) -> Option<u32> {
     while let Some(vertex) = recent.pop() {
         if left[vertex as usize] > 0 {
@@ -179,8 +182,8 @@ fn lately_used(recent: &mut Vec<u32>, left: &[u32]) -> Option<u32> {
     None
 }
 
-/// The same triangles with parts that face away from the middle of the mesh first. Parts are split where as few vertices are shaded for what
-/// is before the split as for the part on the whole.
+/// Sorts parts so that those facing away from the mesh center come first. A part is split where its shaded vertices per
+/// triangle are about those of the whole part.
 fn outward_first(mesh: &Mesh, indices: &[u32], clusters: &[usize]) -> Vec<u32> {
     let mut cache = Cache::new(mesh.vertex_count());
     let mut parts: Vec<&[u32]> = Vec::new();
@@ -211,7 +214,7 @@ fn outward_first(mesh: &Mesh, indices: &[u32], clusters: &[usize]) -> Vec<u32> {
     keyed.into_iter().flat_map(|(_, part)| part).copied().collect()
 }
 
-/// Middle of the triangles by their areas, and their mean direction.
+/// Returns the area-weighted center of the triangles, and their mean direction.
 fn shape(mesh: &Mesh, indices: &[u32]) -> (Vec3, Vec3) {
     let (mut center, mut normal, mut area) = (Vec3::ZERO, Vec3::ZERO, 0.0);
     for triangle in indices.chunks_exact(3) {
@@ -230,7 +233,7 @@ mod tests {
     use crate::geometry::{cuboid, plane, sphere};
     use glam::Vec2;
 
-    /// The same mesh with its triangles in another order: each `step` farther, which shares no factor with how many there are.
+    /// Returns the mesh with its triangles in steps of `step`, which is coprime to their number.
     fn shuffled(mesh: &Mesh, step: usize) -> Mesh {
         let count = mesh.triangle_count();
         let at = |i: usize| i * step % count;
@@ -238,7 +241,7 @@ mod tests {
         Mesh { indices, ..mesh.clone() }
     }
 
-    /// Its triangles by what is at their corners, in a fixed order.
+    /// Returns the triangles by their corner data, in a fixed order.
     fn surface(mesh: &Mesh) -> Vec<[[u32; 8]; 3]> {
         let corner = |i: usize| {
             let (p, n, uv) = (mesh.positions[i], mesh.normals[i], mesh.uv0[i]);
@@ -256,7 +259,7 @@ mod tests {
         assert!(shaded_vertices(&before) > 5 * triangles / 2, "{}", shaded_vertices(&before));
         order_for_drawing(&mut mesh);
         let after = shaded_vertices(&mesh);
-        // The paper has 0.6 to 0.75 for a cache of this size; half would be one for each vertex.
+        // The paper states 0.6 to 0.75 for this cache size; 0.5 would be one invocation per vertex.
         assert!(after < 3 * triangles / 4, "{after} of {triangles} triangles");
         assert_eq!(surface(&mesh), surface(&before), "the surface is the same, corner by corner");
         mesh.check().expect("a mesh");
@@ -294,7 +297,7 @@ mod tests {
         assert!(shaded_vertices(&mesh) <= shaded_vertices(&once));
     }
 
-    /// A ball in a ball, the inner one first: what is outside is drawn before what it hides.
+    /// A ball in a ball, the inner one first: outer triangles are drawn before those they occlude.
     #[test]
     fn what_faces_outward_comes_first() {
         let (inner, outer) = (sphere(0.3, 48, 24), sphere(1.0, 48, 24));

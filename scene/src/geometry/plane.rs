@@ -1,12 +1,12 @@
-//! A horizontal rectangle.
+//! Horizontal rectangle.
 
 use glam::{Vec2, Vec3, Vec4};
 
 use crate::bounds::Aabb;
 use crate::mesh::Mesh;
 
-/// A rectangle of `size` meters along x and z around the origin, facing up, in `cells` × `cells`
-/// quads. The texture repeats `tiles` times along each side; u grows along +x, v along +z.
+/// Returns a rectangle of `size` meters along x and z around the origin, facing up, in `cells` × `cells` quads. The
+/// texture repeats `tiles` times along each side; u grows along +x, v along +z.
 #[must_use]
 pub fn plane(size: Vec2, cells: u32, tiles: Vec2) -> Mesh {
     let cells = cells.max(1);

@@ -1,8 +1,8 @@
 //! Surfaces of revolution around the y axis: spheres, cylinders, tori, columns.
 //!
-//! A profile is a polyline in the half plane (radius, y), listed in the direction in which v grows,
-//! so that the surface lies to its left seen with the radius to the right. Position at u:
-//! (r sin φ, y, r cos φ) with φ = 2πu, hence u grows to the right for a viewer outside.
+//! A profile is a polyline in the half plane (radius, y), listed in the direction of increasing v. With the radius
+//! pointing right, the outside of the surface is to its left. The position at u is (r sin φ, y, r cos φ) with φ = 2πu;
+//! for a viewer outside, u grows to the right.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use crate::bounds::Aabb;
 use crate::mesh::Mesh;
 
-/// One point of a profile.
+/// Point of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfilePoint {
     /// (radius ≥ 0, y) in meters.
@@ -22,9 +22,9 @@ pub struct ProfilePoint {
     pub v: f32,
 }
 
-/// Sweeps each of `profiles` around the y axis in `segments` steps (at least 3). Profiles are not
-/// joined to each other, which makes hard edges. A point of radius 0 makes a fan, so no triangle is
-/// degenerate as long as consecutive points differ.
+/// Sweeps each of `profiles` around the y axis in `segments` steps (at least 3). Profiles are not connected to each
+/// other, which makes hard edges. A point of radius 0 makes a fan, so no triangle is degenerate if consecutive points
+/// differ.
 #[must_use]
 pub fn profile_of_revolution(profiles: &[&[ProfilePoint]], segments: u32) -> Mesh {
     let segments = segments.max(3);
@@ -42,10 +42,10 @@ fn sweep(mesh: &mut Mesh, profile: &[ProfilePoint], segments: u32) {
     for point in profile {
         let pole = point.at.x == 0.0;
         for column in 0..columns {
-            // A pole has no angle of its own: each of its triangles looks along its own middle.
+            // A pole has no angle: each of its triangles uses the angle of its own middle.
             let shift = if pole { 0.5 } else { 0.0 };
             let u = (column as f32 + shift) / segments as f32;
-            // The seam's two columns must agree to the bit, which sin(2π) would not.
+            // The two columns of the seam must be equal bit for bit, which sin(2π) would not be.
             let turn = if column == segments { shift / segments as f32 } else { u };
             let (sin, cos) = (turn * TAU).sin_cos();
             let (r, y) = (point.at.x, point.at.y);
@@ -71,8 +71,8 @@ fn sweep(mesh: &mut Mesh, profile: &[ProfilePoint], segments: u32) {
     }
 }
 
-/// A sphere around the origin, in meters: `segments` around (at least 3) and `rings` from pole to
-/// pole (at least 2).
+/// Returns a sphere around the origin, in meters: `segments` around (at least 3) and `rings` from pole to pole (at
+/// least 2).
 #[must_use]
 pub fn sphere(radius: f32, segments: u32, rings: u32) -> Mesh {
     let rings = rings.max(2);
@@ -91,7 +91,7 @@ pub fn sphere(radius: f32, segments: u32, rings: u32) -> Mesh {
     mesh
 }
 
-/// An upright cylinder around the origin with flat caps, in meters.
+/// Returns an upright cylinder around the origin with flat caps, in meters.
 #[must_use]
 pub fn cylinder(radius: f32, half_height: f32, segments: u32) -> Mesh {
     let point = |r: f32, y: f32, normal: Vec2, v: f32| ProfilePoint { at: Vec2::new(r, y), normal, v };
@@ -104,8 +104,8 @@ pub fn cylinder(radius: f32, half_height: f32, segments: u32) -> Mesh {
     mesh
 }
 
-/// A torus around the y axis: `major` meters from the axis to the middle of the tube, whose radius
-/// is `minor` (below `major`).
+/// Returns a torus around the y axis: `major` meters from the axis to the center of the tube, whose radius is `minor`
+/// (below `major`).
 #[must_use]
 pub fn torus(major: f32, minor: f32, segments: u32, rings: u32) -> Mesh {
     let rings = rings.max(3);

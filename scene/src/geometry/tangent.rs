@@ -1,5 +1,5 @@
-//! Tangents in the sense of MikkTSpace, which normal maps are baked against (glTF 2.0, section
-//! 3.7.2.1: "tangents SHOULD be calculated using default MikkTSpace algorithms").
+//! MikkTSpace tangents, against which normal maps are baked (glTF 2.0, section 3.7.2.1: "tangents SHOULD be calculated
+//! using default MikkTSpace algorithms").
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -7,12 +7,12 @@ use super::frame::tangent_of_normal;
 use super::weld::split_by_key;
 use crate::mesh::Mesh;
 
-/// Computes tangents from texture coordinates of `uv_set`, splitting vertices where the two sides of
-/// a seam disagree. A mesh without that set, or without triangles, gets frames from its normals.
+/// Computes tangents from texture coordinates of `uv_set`, splitting vertices where the two sides of a seam differ. A
+/// mesh without that set, or without triangles, gets tangents from its normals.
 pub(crate) fn generate_tangents(mesh: &mut Mesh, uv_set: u32) {
     let mut faces = Faces { mesh, uv: mesh.uv(uv_set), corners: vec![Vec4::ZERO; mesh.indices.len()] };
     if !faces.uv.is_empty() {
-        // A refusal leaves zeros, which the repair below replaces.
+        // If generation fails, tangents stay zero and the repair below replaces them.
         mikktspace::generate_tangents(&mut faces);
     }
     let corners = faces.corners;
@@ -24,15 +24,15 @@ pub(crate) fn generate_tangents(mesh: &mut Mesh, uv_set: u32) {
     repair_tangents(mesh);
 }
 
-/// Makes every tangent a unit vector perpendicular to its normal, with w = ±1. Tangents that are not finite,
-/// zero or along the normal (collapsed texture coordinates) are replaced by some perpendicular
-/// vector; their number is returned.
+/// Makes every tangent a unit vector perpendicular to its normal, with w = ±1. Tangents that are not finite, zero or
+/// parallel to the normal (collapsed texture coordinates) are replaced by a perpendicular vector; their number is
+/// returned.
 pub(crate) fn repair_tangents(mesh: &mut Mesh) -> usize {
     let mut replaced = 0;
     for (tangent, &normal) in mesh.tangents.iter_mut().zip(&mesh.normals) {
         let w = if tangent.w < 0.0 { -1.0 } else { 1.0 };
         let along = tangent.truncate();
-        // Below a thousandth of a radian from the normal the direction is rounding noise.
+        // Within a thousandth of a radian of the normal, the direction is rounding noise.
         let across = along - normal * along.dot(normal);
         let usable = across.is_finite() && across.length_squared() > 1e-6 * along.length_squared().max(1e-12);
         let direction = if usable {
@@ -46,7 +46,7 @@ pub(crate) fn repair_tangents(mesh: &mut Mesh) -> usize {
     replaced
 }
 
-/// A mesh as the generator sees it: faces of three corners.
+/// Mesh as seen by the generator: faces of three corners.
 struct Faces<'a> {
     mesh: &'a Mesh,
     uv: &'a [Vec2],
@@ -81,7 +81,7 @@ impl mikktspace::Geometry for Faces<'_> {
     }
 
     fn set_tangent_encoded(&mut self, tangent: [f32; 4], face: usize, corner: usize) {
-        // The generator measures v upwards, glTF downwards: the bitangent, and so w, changes sign.
+        // The generator measures v upward, glTF downward; the bitangent and thus w change sign.
         let [x, y, z, w] = tangent;
         self.corners[face * 3 + corner] = Vec3::new(x, y, z).extend(-w);
     }

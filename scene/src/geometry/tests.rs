@@ -1,4 +1,4 @@
-//! Shapes against their closed forms, and the vertex work on hard inputs.
+//! Shapes compared with closed forms, and geometry algorithms on difficult input.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use super::*;
 use crate::bounds::Aabb;
 use crate::mesh::Mesh;
 
-/// The signed volume of a closed mesh, by the divergence theorem.
+/// Returns the signed volume of a closed mesh, by the divergence theorem.
 fn volume(mesh: &Mesh) -> f64 {
     mesh.triangles()
         .map(|[a, b, c]| {
@@ -18,7 +18,7 @@ fn volume(mesh: &Mesh) -> f64 {
         .sum()
 }
 
-/// The derivatives of position along u and v over a triangle.
+/// Returns the derivatives of position along u and v over a triangle.
 fn gradients(mesh: &Mesh, [a, b, c]: [usize; 3]) -> (DVec3, DVec3) {
     let p = |i: usize| mesh.positions[i].as_dvec3();
     let t = |i: usize| mesh.uv0[i].as_dvec2();
@@ -28,8 +28,8 @@ fn gradients(mesh: &Mesh, [a, b, c]: [usize; 3]) -> (DVec3, DVec3) {
     ((e1 * d2.y - e2 * d1.y) / det, (e2 * d1.x - e1 * d2.x) / det)
 }
 
-/// Promises of [`Mesh`], no triangle without area, normals on the side the triangle faces, tangents
-/// along growing u and bitangents against growing v.
+/// Checks the guarantees of [`Mesh`]. Triangles have area, normals are on their front side, tangents follow increasing
+/// u, and bitangents decreasing v.
 fn assert_sound(mesh: &Mesh) {
     assert_eq!(mesh.check(), Ok(()), "{}", mesh.name);
     assert!(mesh.triangle_count() > 0);
@@ -68,8 +68,8 @@ fn shapes_are_sound() {
     }
 }
 
-/// A polyhedron inscribed in a smooth body approaches its volume with the square of the step; the
-/// bounds are that second-order error at this resolution.
+/// The volume of a polyhedron inscribed in a smooth body converges with the square of the step; the bounds are that
+/// second-order error.
 #[test]
 fn closed_shapes_enclose_their_volume() {
     let near = |mesh: &Mesh, exact: f64, relative: f64| {
@@ -83,7 +83,7 @@ fn closed_shapes_enclose_their_volume() {
 }
 
 fn folded_quad() -> Mesh {
-    // Two triangles sharing an edge, at right angles.
+    // Two triangles that share an edge, at right angles.
     let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(0.0, 0.0, -1.0)];
     Mesh {
         bounds: Aabb::from_points(&positions),
@@ -118,8 +118,8 @@ fn flat_normals_survive_tiny_and_huge_triangles() {
     }
 }
 
-/// Generated tangents equal the analytic ones of a sphere to a few degrees (the generator averages
-/// over flat triangles), with the handedness glTF wants: v grows downwards.
+/// Generated tangents equal the analytic ones of a sphere within a few degrees, since the generator averages flat
+/// triangles. Their handedness is glTF's: v points down.
 #[test]
 fn generated_tangents_agree_with_analytic_ones() {
     let exact = sphere(1.0, 64, 32);
@@ -139,7 +139,7 @@ fn generated_tangents_agree_with_analytic_ones() {
         compared += 1;
     }
     assert!(compared > 1000);
-    // Mirrored coordinates turn both the tangent and the handedness.
+    // Mirrored coordinates flip both the tangent and the handedness.
     let mut mirrored = exact;
     for uv in &mut mirrored.uv0 {
         uv.x = 1.0 - uv.x;
@@ -150,7 +150,7 @@ fn generated_tangents_agree_with_analytic_ones() {
     assert_eq!(mirrored.tangents[i].w, -1.0);
 }
 
-/// Collapsed texture coordinates, no coordinates at all, no triangles: still unit tangents.
+/// Tangents have unit length even with collapsed texture coordinates, no coordinates, or no triangles.
 #[test]
 fn tangents_exist_without_usable_coordinates() {
     for uv in [Vec::new(), vec![Vec2::splat(0.5); 6]] {

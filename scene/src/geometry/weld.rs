@@ -1,23 +1,23 @@
-//! Splitting vertices whose corners disagree.
+//! Splitting of vertices whose corners differ.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// An index buffer over new vertices, and where each new vertex came from.
+/// Index buffer over new vertices, and the source of each new vertex.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Split {
-    /// One new vertex number a corner, in corner order.
+    /// New vertex of each corner, in corner order.
     pub indices: Vec<u32>,
-    /// For each new vertex, the old vertex it copies.
+    /// Old vertex that each new vertex copies.
     pub source_vertex: Vec<u32>,
-    /// For each new vertex, the first corner that asked for it.
+    /// First corner that uses each new vertex.
     pub source_corner: Vec<u32>,
 }
 
-/// Gives every distinct pair (old vertex, key) one new vertex, numbered by first appearance.
+/// Creates one new vertex for each distinct pair (old vertex, key), numbered by first appearance.
 ///
-/// `indices` holds the old vertex of each corner, `key` what that corner wants of its vertex
-/// besides, as bits. The result depends on the input alone: the map is only ever looked up.
+/// `indices` holds the old vertex of each corner; `key` returns, as bits, the other data of that corner. The result is
+/// deterministic.
 pub(crate) fn split_by_key<K: Eq + Hash>(indices: &[u32], key: impl Fn(usize) -> K) -> Split {
     let mut known: HashMap<(u32, K), u32> = HashMap::with_capacity(indices.len());
     let mut split =

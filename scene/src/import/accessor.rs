@@ -1,5 +1,5 @@
-//! Typed arrays out of buffer views (glTF 2.0, sections 3.6.2 and 5.1): strided, normalized, sparse,
-//! or zero where no view is given.
+//! Accessors: typed arrays from buffer views (glTF 2.0, sections 3.6.2 and 5.1), strided, normalized or sparse; zeros
+//! without a view.
 
 use std::borrow::Cow;
 
@@ -11,22 +11,22 @@ use super::packed::Values;
 use super::source::{Source, beyond, slice};
 use crate::error::{Quantity, SceneError};
 
-/// An accessor whose every byte is known to be there.
+/// An accessor whose byte ranges are validated.
 struct Elements<'a> {
-    /// From the first element on; `None` for zeros.
+    /// Bytes from the first element on; `None` for zeros.
     data: Option<Cow<'a, [u8]>>,
     stride: usize,
     count: usize,
     component: ComponentType,
-    /// Components an element: 1 to 4, or 16 of a matrix.
+    /// Components of an element: 1 to 4, or 16 for a matrix.
     width: usize,
     normalized: bool,
-    /// Positions to replace, and the bytes that replace them.
+    /// Sparse positions, and the replacement bytes.
     sparse: Option<(Vec<u32>, &'a [u8], usize)>,
 }
 
-/// Reads an accessor of vectors of `N` components, or of 4×4 matrices for an `N` of 16, as f32. Integer components count as normalized
-/// where the accessor says so, and as plain numbers otherwise (KHR_mesh_quantization).
+/// Reads an accessor of vectors of `N` components, or of 4×4 matrices if `N` is 16, as f32. Integers are normalized if
+/// the accessor says so, and otherwise converted unchanged (KHR_mesh_quantization).
 pub(super) fn floats<const N: usize>(
     source: &Source<'_>,
     values: impl Into<Values>,
@@ -61,7 +61,7 @@ pub(super) fn integers(source: &Source<'_>, index: usize, user: &str) -> Result<
     Ok(collect(&elements, 0, |b| integer_from_bytes(b, component)))
 }
 
-/// The number of components of an accessor's elements, if it exists.
+/// Returns the number of components of an accessor's elements, if the accessor exists.
 pub(super) fn width(source: &Source<'_>, index: usize) -> Option<usize> {
     match source.root.accessors.get(index)?.type_ {
         Checked::Valid(kind) => Some(kind.multiplicity()),
@@ -83,7 +83,7 @@ fn collect<T: Copy>(elements: &Elements<'_>, zero: T, read: impl Fn(&[u8]) -> T)
     values
 }
 
-/// Looks an accessor up and checks every range it will be read from. `user` names who asks.
+/// Looks up an accessor and checks every byte range it uses. `user` names the referring object.
 fn resolve<'a>(source: &'a Source<'_>, values: Values, user: &str) -> Result<Elements<'a>, SceneError> {
     let index = values.accessor;
     let accessors = &source.root.accessors;
@@ -93,9 +93,10 @@ fn resolve<'a>(source: &'a Source<'_>, values: Values, user: &str) -> Result<Ele
         return Err(source.malformed(&at, "unknown component type or element type"));
     };
     let component = component.0;
-    // Columns of the smaller matrices may be padded, and nothing reads them. Columns of four never are (section 3.6.2.4).
+    // Columns of smaller matrices may be padded; no caller reads such matrices. Columns of four components have no
+    // padding (section 3.6.2.4).
     if matches!(kind, Type::Mat2 | Type::Mat3) {
-        return Err(source.malformed(&at, "it holds 2×2 or 3×3 matrices, which nothing here reads"));
+        return Err(source.malformed(&at, "it holds 2×2 or 3×3 matrices, which are not supported"));
     }
     let count = accessor.count.0;
     if count == 0 {
@@ -107,7 +108,7 @@ fn resolve<'a>(source: &'a Source<'_>, values: Values, user: &str) -> Result<Ele
     let width = kind.multiplicity();
     let size = component.size() * width;
     if let Some((view, id)) = values.packed {
-        // The accessor's own view and sparse values are for programs that do not decode the mesh.
+        // The accessor's own view and sparse values are for programs without a decoder.
         let data = packed(source, &at, view, id, component, width)?;
         if data.len() as u64 != count * size as u64 {
             let reason = format!("states {count} elements, but the compressed mesh has {}", data.len() / size);
@@ -131,7 +132,7 @@ fn resolve<'a>(source: &'a Source<'_>, values: Values, user: &str) -> Result<Ele
     Ok(Elements { data, stride, count: count as usize, component, width, normalized: accessor.normalized, sparse })
 }
 
-/// The values of an attribute of a compressed mesh, in the component type of an accessor.
+/// Returns the values of an attribute of a compressed mesh, in the component type of an accessor.
 fn packed<'a>(
     source: &'a Source<'_>,
     at: &str,
@@ -156,7 +157,7 @@ fn packed<'a>(
     Ok(values)
 }
 
-/// The bytes of `count` elements of `size` bytes, from `offset` in a view, and their stride.
+/// Returns the bytes of `count` elements of `size` bytes, from `offset` in a view, and their stride.
 fn array<'a>(
     source: &'a Source<'_>,
     at: &str,
@@ -171,7 +172,7 @@ fn array<'a>(
         let reason = format!("the stride of {stride} bytes is less than the element's {size}");
         return Err(source.malformed(at, reason));
     }
-    // At most 2^28 elements of at most 2^64 / 2^28 bytes could overflow, hence the check.
+    // 2^28 elements with a stride of up to 2^64 could overflow, hence the check.
     let length = (count - 1).checked_mul(stride as u64).and_then(|l| l.checked_add(size as u64));
     length.and_then(|length| slice(bytes, offset, length)).map(|data| (data, stride)).ok_or_else(|| {
         source.malformed(
@@ -185,7 +186,7 @@ fn array<'a>(
     })
 }
 
-/// The positions and replacement bytes of a sparse accessor over `count` elements.
+/// Returns the positions and replacement bytes of a sparse accessor over `count` elements.
 fn resolve_sparse<'a>(
     source: &'a Source<'_>,
     at: &str,
@@ -229,14 +230,14 @@ fn float_from_bytes(b: &[u8], component: ComponentType, normalized: bool) -> f32
         }
     };
     if normalized {
-        // The lowest signed code lies just beyond −1 (section 3.6.2.2).
+        // The lowest signed integer is slightly below −1 (section 3.6.2.2).
         (value / largest).max(-1.0)
     } else {
         value
     }
 }
 
-/// Signed and float components read as zero; callers rule them out.
+/// Returns zero for signed and float components, which callers exclude.
 fn integer_from_bytes(b: &[u8], component: ComponentType) -> u32 {
     match component {
         ComponentType::U8 => u32::from(b[0]),

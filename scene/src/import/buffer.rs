@@ -1,4 +1,4 @@
-//! Loading the buffers of a document.
+//! Loading of buffers.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -55,13 +55,13 @@ pub(super) fn load<'a>(
     Ok(buffers)
 }
 
-/// Buffers that hold uncompressed copies of compressed buffer views, which this build decodes, or promise to.
+/// Returns the buffers that hold uncompressed fallbacks of compressed views, in a build that decodes the views.
 #[cfg(feature = "meshopt")]
 fn fallbacks(source: &Source<'_>, has_blob: bool) -> BTreeSet<usize> {
     super::views::fallbacks(source.root, has_blob)
 }
 
-/// A build that decodes no views needs every buffer.
+/// Returns nothing: a build without a decoder needs every buffer.
 #[cfg(not(feature = "meshopt"))]
 fn fallbacks(_: &Source<'_>, _: bool) -> BTreeSet<usize> {
     BTreeSet::new()

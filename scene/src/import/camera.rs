@@ -10,9 +10,8 @@ use super::source::{Source, Warnings, beyond};
 use crate::camera::{Camera, Projection};
 use crate::error::{SceneError, one_line};
 
-/// Appends the cameras of all nodes. A camera goes by its own name; one without, or one that
-/// several nodes share, by its node's; failing both by `camera N`. Returns the node of each, by its place, and its index in
-/// the file.
+/// Appends the cameras of all nodes; returns the node (by list position) and the file index of each. A camera is named
+/// after itself; without a name, or if several nodes share it, after its node; otherwise `camera N`.
 pub(super) fn import(
     source: &Source<'_>,
     nodes: &[FlatNode],
@@ -27,7 +26,7 @@ pub(super) fn import(
         };
         let json = all.get(index).ok_or_else(|| source.malformed(&node.at, beyond("camera", index, all)))?;
         let at = format!("camera {index}");
-        // A field of view of π or more is valid by the letter of section 5.15.4, and shows nothing.
+        // A field of view of π or more is valid by section 5.15.4, but shows nothing.
         if json.perspective.as_ref().is_some_and(|p| p.yfov.is_finite() && f64::from(p.yfov) >= PI) {
             warnings.push(format!("{at}: its yfov is not below π radians; it is left out"));
             continue;
@@ -44,7 +43,7 @@ pub(super) fn import(
                 cameras.push(camera);
                 attached.push(Attached { node: place, index });
             }
-            None => warnings.push(format!("{}: its camera looks nowhere and is left out", node.at)),
+            None => warnings.push(format!("{}: its camera has no view direction and is left out", node.at)),
         }
     }
     Ok(attached)

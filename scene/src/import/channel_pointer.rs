@@ -1,15 +1,15 @@
-//! JSON pointers of animation channels (KHR_animation_pointer), as a document states them.
+//! JSON pointers of animation channels (KHR_animation_pointer), as written in a document.
 
 use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-/// Returns the pointer of a channel of a document, by the numbers of its animation and the channel, if it has one.
+/// Returns the pointer of a channel, by the indices of animation and channel, if it has one.
 pub(super) fn of_channel(json: &Value, animation: usize, channel: usize) -> Option<&str> {
     pointer_of(json.get("animations")?.get(animation)?.get("channels")?.get(channel)?)
 }
 
-/// Returns the places of the material extensions that pointers of animations name: `material 3: KHR_materials_sheen`.
+/// Returns the material extensions that animation pointers refer to: `material 3: KHR_materials_sheen`.
 pub(super) fn animated_extensions(json: &Value) -> BTreeSet<String> {
     let animations = json.get("animations").and_then(Value::as_array).into_iter().flatten();
     let place = |pointer: &str| {

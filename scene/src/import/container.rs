@@ -7,18 +7,17 @@ use crate::error::{SceneError, Unsupported};
 const HEADER_BYTES: usize = 12;
 const CHUNK_HEADER_BYTES: usize = 8;
 
-/// The parts of a file.
+/// Parts of a file.
 pub(super) struct Parts<'a> {
-    /// The JSON.
+    /// JSON chunk.
     pub json: &'a [u8],
-    /// The binary chunk of a GLB file.
+    /// Binary chunk of a GLB file.
     pub blob: Option<&'a [u8]>,
     /// True if a chunk follows another one without the padding to four bytes that section 4.4.1 demands.
     pub is_unpadded: bool,
 }
 
-/// Splits a file into its JSON and, for GLB, its binary chunk. A file that does not begin with the
-/// GLB magic is taken for JSON.
+/// Splits a file into its JSON and, for GLB, its binary chunk. A file without the GLB magic is taken for JSON.
 pub(super) fn split<'a>(file: &Path, bytes: &'a [u8]) -> Result<Parts<'a>, SceneError> {
     let malformed = |reason: String| SceneError::malformed(file, "GLB container", reason);
     if bytes.is_empty() {
@@ -60,7 +59,7 @@ pub(super) fn split<'a>(file: &Path, bytes: &'a [u8]) -> Result<Parts<'a>, Scene
             // Unknown chunks must be ignored (section 4.4.1).
             _ => {}
         }
-        // Chunks are padded to four bytes. Some writers leave that out, of the last one or of all.
+        // Chunks are padded to four bytes, but some writers omit the padding.
         let padded = size.next_multiple_of(4).min(body.len());
         let is_next = |at: usize| starts_chunk(&body[at..]);
         let next = if !is_next(padded) && is_next(size) { size } else { padded };
@@ -68,13 +67,13 @@ pub(super) fn split<'a>(file: &Path, bytes: &'a [u8]) -> Result<Parts<'a>, Scene
         rest = &body[next..];
     }
     match json {
-        // Some writers pad with zeros where spaces are due.
+        // Some writers pad with zeros instead of spaces.
         Some(json) => Ok(Parts { json: without_zeros(json), blob, is_unpadded }),
         None => Err(malformed("it has no JSON chunk".into())),
     }
 }
 
-/// Returns whether bytes begin with the header of a binary chunk that ends within them.
+/// Returns true if the bytes begin with the header of a binary chunk that ends within them.
 fn starts_chunk(bytes: &[u8]) -> bool {
     let fits = u32_at(bytes, 0).is_some_and(|size| size as usize <= bytes.len() - CHUNK_HEADER_BYTES.min(bytes.len()));
     fits && bytes.get(4..CHUNK_HEADER_BYTES) == Some(b"BIN\0".as_slice())

@@ -1,7 +1,7 @@
-//! The JSON of a glTF file: its version, repairs of what the schema types cannot read, and the parsed document.
+//! JSON of a glTF file: version check, repair of JSON that the schema types reject, and parsing.
 //!
-//! `gltf-json` is stricter than the specification in a few places, and exporters are looser. Both are settled here, on
-//! plain JSON, before the schema types see it.
+//! In a few places `gltf-json` is stricter than the specification, and some exporters violate it. Both are handled here
+//! on plain JSON, before the schema types parse it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,9 +15,9 @@ use crate::error::{SceneError, Unsupported};
 pub(super) struct Document {
     /// The document as schema types. Indices in it are unchecked.
     pub root: Root,
-    /// The document as JSON without `extras`, for extensions that the schema types leave out.
+    /// The document as JSON without `extras`, for extensions that the schema types do not cover.
     pub json: Value,
-    /// The member [`SWITCHES`] of `extras`, by the pointer to the object that has them (RFC 6901).
+    /// Members [`SWITCHES`] of `extras`, by JSON pointer to their object (RFC 6901).
     pub switches: BTreeMap<String, Value>,
 }
 
@@ -31,8 +31,8 @@ pub(super) const NO_NODE: u32 = u32::MAX;
 ///
 /// # Errors
 ///
-/// Fails for text that is no JSON, for glTF 1.0, and for a document that breaks the schema. The error names the JSON
-/// path.
+/// Fails for text that is not JSON, for glTF 1.0, and for a document that violates the schema. The error contains the
+/// JSON path.
 pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
     let malformed = |reason: String| SceneError::malformed(file, "JSON", reason);
     let mut json: Value = serde_json::from_slice(text).map_err(|e| malformed(e.to_string()))?;
@@ -42,9 +42,9 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
     let switches = switches_of(&json);
     tidy(&mut json);
     fill_in(&mut json);
-    // The schema types would read a list as the fields of an object.
+    // The schema types would accept an array as the fields of an object.
     if !json.is_object() {
-        return Err(malformed("it is no object; a glTF file is a JSON object with `asset`".into()));
+        return Err(malformed("it is not an object; a glTF file is a JSON object with `asset`".into()));
     }
     let root = serde_path_to_error::deserialize(&json).map_err(|error| {
         let path = error.path().to_string();
@@ -53,7 +53,7 @@ pub(super) fn parse(file: &Path, text: &[u8]) -> Result<Document, SceneError> {
     Ok(Document { root, json, switches })
 }
 
-/// The version of a document of glTF 1, which stores dictionaries where glTF 2 stores arrays.
+/// Returns the version if this is a glTF 1 document, which stores dictionaries where glTF 2 stores arrays.
 fn old_version(json: &Value) -> Option<String> {
     let stated = json.get("asset").and_then(|asset| asset.get("version")).map(|version| match version {
         Value::String(text) => text.clone(),
@@ -69,7 +69,7 @@ fn old_version(json: &Value) -> Option<String> {
     is_old.then(|| stated.unwrap_or_else(|| "1.0".into()))
 }
 
-/// Returns the member [`SWITCHES`] in `extras` of nodes, materials and lights.
+/// Returns the members [`SWITCHES`] in `extras` of nodes, materials and lights.
 fn switches_of(json: &Value) -> BTreeMap<String, Value> {
     let mut found = BTreeMap::new();
     for array in ["/nodes", "/materials", "/extensions/KHR_lights_punctual/lights"] {
@@ -84,11 +84,11 @@ fn switches_of(json: &Value) -> BTreeMap<String, Value> {
     found
 }
 
-/// Writes whole numbers as integers and removes `extras`.
+/// Converts integral floats to integers and removes `extras`.
 ///
-/// JSON Schema counts 24.0 as an integer; the schema types do not.
+/// JSON Schema accepts 24.0 as an integer; the schema types do not.
 fn tidy(json: &mut Value) {
-    /// Integers up to here are exact in f64.
+    /// Largest magnitude up to which all integers are exact in f64.
     const LARGEST: f64 = 9_007_199_254_740_992.0;
     let mut stack = vec![json];
     while let Some(value) = stack.pop() {
@@ -109,14 +109,14 @@ fn tidy(json: &mut Value) {
     }
 }
 
-/// Adds members that the specification leaves out and the schema types demand.
+/// Adds optional members that the schema types require.
 fn fill_in(json: &mut Value) {
     for scene in objects(json.get_mut("scenes")) {
         scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
     }
     for animation in objects(json.get_mut("animations")) {
         for channel in objects(animation.get_mut("channels")) {
-            // A channel without a node is ignored, or aims elsewhere by KHR_animation_pointer.
+            // A channel without a node is ignored, or has another target by KHR_animation_pointer.
             if let Some(Value::Object(target)) = channel.get_mut("target") {
                 target.entry("node").or_insert_with(|| Value::from(NO_NODE));
             }
@@ -124,7 +124,7 @@ fn fill_in(json: &mut Value) {
     }
 }
 
-/// The objects of an array.
+/// Iterates over the objects of an array.
 fn objects(array: Option<&mut Value>) -> impl Iterator<Item = &mut Map<String, Value>> {
     array.and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
 }

@@ -1,7 +1,7 @@
 //! Decoding of `KHR_draco_mesh_compression` (bitstreams up to version 2.2).
 //!
-//! The compressed meshes of all primitives that the scene draws are decoded before geometry is built, each once and each on
-//! some core. The decoder is the crate `draco-core`; `Cargo.toml` says why.
+//! The compressed meshes of all drawn primitives are decoded in parallel before geometry is built, each once. The
+//! decoder is the crate `draco-core`; `Cargo.toml` states why.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -20,52 +20,51 @@ use crate::memory::{Loan, OverBudget};
 use crate::parallel::in_parallel;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 
-/// A compressed mesh that is found but not decoded.
+/// A compressed mesh that is located but not decoded.
 struct Compressed<'a> {
     view: usize,
-    /// For messages: `mesh 0 primitive 1: KHR_draco_mesh_compression`.
+    /// Place for messages: `mesh 0 primitive 1: KHR_draco_mesh_compression`.
     at: String,
     bytes: &'a [u8],
-    /// Ids of the attributes that primitives name.
+    /// Ids of the attributes that primitives use.
     ids: BTreeSet<u32>,
-    /// Vertices and triangles that the accessors state.
+    /// Numbers of vertices and triangles according to the accessors.
     vertices: u64,
     triangles: u64,
 }
 
-/// Bytes of attributes that a stream may have for each vertex beside those that the primitive names.
+/// Maximum bytes per vertex of attributes that no primitive uses.
 const UNNAMED_BYTES: u64 = 64;
-/// Bytes of the largest attribute that glTF has: four floats.
+/// Bytes of the largest glTF attribute: four floats.
 const ATTRIBUTE_BYTES: u64 = 16;
-/// Working memory of the decoder for each triangle. A mesh of 100,000 triangles with four attributes was measured to take 168
-/// bytes for each, its attributes included.
+/// Working memory of the decoder per triangle. For 100,000 triangles with four attributes, 168 bytes per triangle were
+/// measured, attributes included.
 const TRIANGLE_BYTES: u64 = 256;
 
 impl Compressed<'_> {
-    /// Most bytes of attributes that the stream may decode to.
+    /// Returns the maximum number of attribute bytes that the stream may decode to.
     fn attribute_bytes(&self) -> u64 {
         self.vertices.saturating_mul(self.ids.len() as u64 * ATTRIBUTE_BYTES + UNNAMED_BYTES)
     }
 
-    /// Memory that decoding takes for a while.
+    /// Returns the temporary memory of decoding.
     fn working_bytes(&self) -> u64 {
         self.attribute_bytes().saturating_add(self.triangles.saturating_mul(TRIANGLE_BYTES))
     }
 
-    /// Memory of the decoded mesh.
+    /// Returns the memory of the decoded mesh.
     fn decoded_bytes(&self) -> u64 {
         let attributes = self.vertices.saturating_mul(self.ids.len() as u64 * ATTRIBUTE_BYTES);
         attributes.saturating_add(self.triangles.saturating_mul(12))
     }
 }
 
-/// Decodes the compressed meshes of everything that these nodes draw, by their buffer views.
+/// Decodes the compressed meshes of all primitives below these nodes; the result is keyed by buffer view.
 ///
 /// # Errors
 ///
-/// Fails for an extension object that breaks the rules, and for a stream that does not decode. Fails if a stream has other
-/// vertices or more triangles than the accessors state, and if memory is short. The first error in the order of the file is
-/// reported.
+/// Fails for an invalid extension object, for a stream that does not decode, and if memory is short. Fails if a stream
+/// has other vertices or more triangles than the accessors state. Reports the first error in file order.
 pub(super) fn decode(
     source: &Source<'_>,
     nodes: &[FlatNode],
@@ -91,7 +90,7 @@ pub(super) fn decode(
         if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     stopped?;
-    // After an error the meshes behind it may be missing, the ones before it never are.
+    // After an error, later meshes may be missing, but no earlier ones.
     let all = compressed.iter().zip(meshes).filter_map(|(mesh, result)| Some((mesh, result?)));
     all.map(|(mesh, result)| match result {
         Ok(decoded) => Ok((mesh.view, decoded)),
@@ -101,13 +100,13 @@ pub(super) fn decode(
     .collect()
 }
 
-/// Finds the compressed meshes of everything that these nodes draw, each once, in the order of their use.
+/// Locates the compressed meshes of all primitives below these nodes, each once, in order of use.
 fn find_all<'a>(source: &'a Source<'_>, nodes: &[FlatNode]) -> Result<Vec<Compressed<'a>>, SceneError> {
     let drawn: BTreeSet<usize> = nodes.iter().filter_map(|node| node.mesh).collect();
     let mut compressed: Vec<Compressed<'a>> = Vec::new();
     let mut places: BTreeMap<usize, usize> = BTreeMap::new();
     for index in drawn {
-        // An index that is too large is an error of the node, which is found later.
+        // An out-of-range index is reported later, as an error of the node.
         let primitives = source.root.meshes.get(index).map_or(&[][..], |mesh| &mesh.primitives);
         for (number, primitive) in primitives.iter().enumerate() {
             let at = format!("mesh {index} primitive {number}: {NAME}");
@@ -126,7 +125,7 @@ fn find_all<'a>(source: &'a Source<'_>, nodes: &[FlatNode]) -> Result<Vec<Compre
     Ok(compressed)
 }
 
-/// Reads and checks the extension's object of a primitive, if it has one.
+/// Reads and checks the extension object of a primitive, if it has one.
 fn find<'a>(source: &'a Source<'_>, primitive: &Primitive, at: String) -> Result<Option<Compressed<'a>>, SceneError> {
     let Some(extension) = packed::of(primitive) else {
         return Ok(None);
@@ -141,22 +140,22 @@ fn find<'a>(source: &'a Source<'_>, primitive: &Primitive, at: String) -> Result
         match extension.id(&semantic.to_string()) {
             Some(Ok(id)) => drop(ids.insert(id)),
             Some(Err(())) => {
-                return Err(source.malformed(&at, format!("its id of {} is no whole number", semantic.to_string())));
+                return Err(source.malformed(&at, format!("its id of {} is not a whole number", semantic.to_string())));
             }
             None => {}
         }
     }
     let count = |index: usize| source.root.accessors.get(index).map(|accessor| accessor.count.0);
-    // Without positions, or with an accessor that does not exist, building the mesh fails and says so.
+    // Missing positions or accessors are reported later, when the mesh is built.
     let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
     let Some(vertices) = position.and_then(|index| count(index.value())) else {
         return Ok(None);
     };
     let corners = match (primitive.indices, &primitive.mode) {
         (Some(index), Checked::Valid(Mode::Triangles)) => count(index.value()).unwrap_or(0),
-        // The accessor counts the corners of a strip; the stream has triangles.
+        // The accessor counts strip indices, but the stream contains triangles.
         (Some(index), _) => count(index.value()).unwrap_or(0).saturating_mul(3),
-        // Nothing states the number of triangles. A closed mesh has two for each vertex.
+        // The number of triangles is not stated. A closed mesh has two per vertex.
         (None, _) => vertices.saturating_mul(9),
     };
     if vertices > MAX_ELEMENTS || corners > MAX_ELEMENTS {
@@ -188,7 +187,7 @@ fn decode_one(compressed: &Compressed<'_>, loan: Result<Loan<'_>, OverBudget>) -
     unpack(compressed, &mesh).map_err(Failure::Stream)
 }
 
-/// The decoder's message; for limits, which the accessors state, a message that says so.
+/// Returns the decoder's message; for exceeded limits, one that refers to the accessors.
 fn reason(compressed: &Compressed<'_>, error: &DracoError) -> String {
     match error.kind() {
         ErrorKind::LimitExceeded => format!(
@@ -199,7 +198,7 @@ fn reason(compressed: &Compressed<'_>, error: &DracoError) -> String {
     }
 }
 
-/// Copies the attributes that primitives name, a value for each vertex, and the indices.
+/// Copies the attributes that primitives use, one value per vertex, and the indices.
 fn unpack(compressed: &Compressed<'_>, mesh: &Mesh) -> Result<PackedMesh, String> {
     let vertices = mesh.num_points();
     if vertices as u64 != compressed.vertices {

@@ -1,17 +1,17 @@
-//! The two encodings of bytes in URIs: base64 and percent signs.
+//! Decoding of base64 and percent-encoding in URIs.
 
-/// Why text is not base64.
+/// Error of decoding base64.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(super) enum Base64Error {
-    /// A byte that is no digit.
-    #[error("the byte {byte} at {at} is no digit")]
+    /// A byte is not a base64 digit.
+    #[error("the byte {byte} at {at} is not a base64 digit")]
     Digit {
         /// Position in the text.
         at: usize,
         /// The byte.
         byte: u8,
     },
-    /// One digit is left over, or bits of the last one are.
+    /// An incomplete last group, or nonzero unused bits.
     #[error("it ends within a byte")]
     Length,
 }
@@ -22,7 +22,7 @@ impl std::fmt::Debug for Base64Error {
     }
 }
 
-/// Decodes base64 (RFC 4648, section 4). The padding at the end may be left out.
+/// Decodes base64 (RFC 4648, section 4). The padding may be omitted.
 pub(super) fn decode_base64(text: &[u8]) -> Result<Vec<u8>, Base64Error> {
     let padding = text.iter().rev().take_while(|b| **b == b'=').count();
     let digits = &text[..text.len() - padding];
@@ -30,7 +30,7 @@ pub(super) fn decode_base64(text: &[u8]) -> Result<Vec<u8>, Base64Error> {
         return Err(Base64Error::Length);
     }
     let mut bytes = Vec::with_capacity(digits.len() / 4 * 3 + 2);
-    // The newest `count` bits of `bits` are not in a byte yet.
+    // The low `count` bits of `bits` are not written yet.
     let (mut bits, mut count) = (0_u32, 0);
     for (at, &byte) in digits.iter().enumerate() {
         let digit = match byte {
@@ -53,7 +53,7 @@ pub(super) fn decode_base64(text: &[u8]) -> Result<Vec<u8>, Base64Error> {
     Ok(bytes)
 }
 
-/// Replaces `%` and two hexadecimal digits by the byte they name (RFC 3986, section 2.1); a sign without two digits stays.
+/// Decodes percent-encoding (RFC 3986, section 2.1); a percent sign without two hexadecimal digits is kept.
 pub(super) fn decode_percent(text: &[u8]) -> Vec<u8> {
     let digit = |byte: u8| char::from(byte).to_digit(16).map(|digit| digit as u8);
     let mut bytes = Vec::with_capacity(text.len());

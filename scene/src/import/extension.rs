@@ -1,4 +1,4 @@
-//! Extensions of glTF: which ones the importer reads, and what happens to a file that uses another one.
+//! Extensions of glTF: which ones the importer supports, and how others are treated.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub enum Support {
     Full,
     /// The extension is read in a build with this feature of the crate.
     Feature(&'static str),
-    /// The extension is not read. A file that uses it loads with a warning; a file that requires it is refused.
+    /// The extension is not read. A file that uses it loads with a warning; a file that requires it is rejected.
     None,
 }
 
@@ -25,7 +25,7 @@ pub struct Extension {
     pub name: &'static str,
     /// Treatment by the importer.
     pub support: Support,
-    /// One line on what is read, what is converted, or what a file loses without it.
+    /// One line on what is read or converted, or what a file loses without the extension.
     pub note: &'static str,
 }
 
@@ -41,28 +41,28 @@ const fn none(name: &'static str, note: &'static str) -> Extension {
     Extension { name, support: Support::None, note }
 }
 
-/// Every Khronos (`KHR_`) and multi-vendor (`EXT_`) extension of glTF 2.0, sorted by name. `docs/reference/files.md` prints this
-/// table.
+/// Every Khronos (`KHR_`) and multi-vendor (`EXT_`) extension of glTF 2.0, sorted by name. `docs/reference/files.md`
+/// contains this table.
 pub const EXTENSIONS: &[Extension] = &[
     none("EXT_instance_features", "feature identifiers of instances are not read"),
-    none("EXT_lights_ies", "light profiles are not read; the light shines evenly"),
-    none("EXT_lights_image_based", "the environment of the program is used"),
+    none("EXT_lights_ies", "light profiles are not read; the light is equal in all directions"),
+    none("EXT_lights_image_based", "the environment of the application is used"),
     none("EXT_mesh_features", "feature identifiers of vertices are not read"),
-    full("EXT_mesh_gpu_instancing", "of skinned meshes one instance is drawn"),
+    full("EXT_mesh_gpu_instancing", "only one instance of a skinned mesh is drawn"),
     none("EXT_mesh_manifold", "the mesh is drawn; its manifold indices are not read"),
     none("EXT_mesh_primitive_edge_visibility", "edges are not drawn"),
     none("EXT_mesh_primitive_restart", "an index that restarts a strip is refused as out of range"),
     feature("EXT_meshopt_compression", "meshopt", "all modes and filters"),
     none("EXT_structural_metadata", "metadata is not read"),
     none("EXT_texture_astc", "ASTC images are not decoded"),
-    feature("EXT_texture_webp", "webp", "still pictures, lossy and lossless; they are preferred to the fallback image"),
+    feature("EXT_texture_webp", "webp", "still images, lossy and lossless; preferred over the fallback image"),
     none("KHR_accessor_float64", "accessors of 64-bit floats are refused"),
     full(
         "KHR_animation_pointer",
         "animates node transforms and weights, factors and texture transforms of materials, lights and cameras; other \
          properties keep their value, with a warning",
     ),
-    none("KHR_audio_emitter", "there is no sound"),
+    none("KHR_audio_emitter", "sound is not played"),
     feature("KHR_draco_mesh_compression", "draco", "bitstreams up to 2.2, every encoding of meshes"),
     none("KHR_gaussian_splatting", "splats are not drawn"),
     none("KHR_implicit_shapes", "shapes are not drawn; they serve physics"),
@@ -75,7 +75,7 @@ pub const EXTENSIONS: &[Extension] = &[
     full("KHR_materials_emissive_strength", "emission is in nits"),
     full("KHR_materials_ior", ""),
     full("KHR_materials_iridescence", ""),
-    full("KHR_materials_pbrSpecularGlossiness", "converted to a metal-rough material, as Filament shades it"),
+    full("KHR_materials_pbrSpecularGlossiness", "converted to a metallic-roughness material, as Filament shades it"),
     full("KHR_materials_sheen", ""),
     full("KHR_materials_specular", ""),
     full("KHR_materials_transmission", ""),
@@ -88,15 +88,15 @@ pub const EXTENSIONS: &[Extension] = &[
     none("KHR_materials_volume_scatter", "the volume absorbs and does not scatter"),
     full("KHR_mesh_quantization", ""),
     feature("KHR_meshopt_compression", "meshopt", "all modes and filters, versions 0 and 1 of attributes"),
-    none("KHR_node_hoverability", "it concerns input, which a scene has none of"),
-    none("KHR_node_selectability", "it concerns input, which a scene has none of"),
+    none("KHR_node_hoverability", "input is not handled"),
+    none("KHR_node_selectability", "input is not handled"),
     full("KHR_node_visibility", "meshes and lights of hidden nodes are left out; the value cannot be animated"),
     none("KHR_physics_rigid_bodies", "nothing is simulated"),
     none("KHR_techniques_webgl", "shaders in files are not read"),
     feature(
         "KHR_texture_basisu",
         "basisu",
-        "ETC1S and UASTC become BC7, ETC2 or ASTC where the device samples these, RGBA8 otherwise; they are preferred to the fallback image",
+        "ETC1S and UASTC become BC7, ETC2 or ASTC where the device samples these, RGBA8 otherwise; preferred over the fallback image",
     ),
     none("KHR_texture_procedurals", "procedural textures are not evaluated"),
     full("KHR_texture_transform", ""),
@@ -104,7 +104,7 @@ pub const EXTENSIONS: &[Extension] = &[
     none("KHR_xmp_json_ld", "metadata is not read"),
 ];
 
-/// Returns [`EXTENSIONS`] as a table in Markdown.
+/// Returns [`EXTENSIONS`] as a Markdown table.
 pub fn extensions_table() -> String {
     let row = |extension: &Extension| {
         let support = match extension.support {
@@ -118,7 +118,7 @@ pub fn extensions_table() -> String {
     format!("| extension | read | note |\n| --- | --- | --- |\n{rows}")
 }
 
-/// Returns whether this build reads the extension.
+/// Returns true if this build reads the extension.
 pub(super) fn is_supported(name: &str) -> bool {
     let known = EXTENSIONS.iter().find(|extension| extension.name == name);
     known.is_some_and(|extension| match extension.support {
@@ -128,7 +128,7 @@ pub(super) fn is_supported(name: &str) -> bool {
     })
 }
 
-/// Returns whether this crate was compiled with the feature.
+/// Returns true if this crate was compiled with the feature.
 fn is_enabled(feature: &str) -> bool {
     let enabled = [
         ("draco", cfg!(feature = "draco")),
@@ -141,11 +141,11 @@ fn is_enabled(feature: &str) -> bool {
 
 /// Checks the version and the extensions of a document.
 ///
-/// Warns once for each optional extension that is not read.
+/// Warns once for each optional extension that is not supported.
 ///
 /// # Errors
 ///
-/// Fails for a version other than 2, and for a required extension that is not read.
+/// Fails for a version other than 2, and for a required extension that is not supported.
 pub(super) fn check(file: &Path, root: &Root, warnings: &mut Warnings) -> Result<(), SceneError> {
     let unsupported = |feature| SceneError::Unsupported { file: file.into(), feature };
     let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);

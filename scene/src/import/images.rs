@@ -1,4 +1,4 @@
-//! Decoding images of textures: headers first, then pixels on as many threads as there are cores and as there is memory for.
+//! Decoding of texture images: headers first, then pixels in parallel, as cores and memory allow.
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -18,29 +18,29 @@ use crate::progress::{Progress, ProgressFn, Stage, report};
 use crate::read::{file_bytes, read_file, read_start};
 use crate::texture::{BlockFormats, Image, Texture, TextureRole};
 
-/// An image that is found but not decoded.
+/// An image that is located but not decoded.
 struct Encoded<'a> {
-    /// For messages: the image's own file, or the file it is embedded in.
+    /// File for messages: the image's own, or the one it is embedded in.
     file: PathBuf,
-    /// For messages: where in that file.
+    /// Place in the file, for messages.
     at: String,
-    /// None for a file, which is read when it is decoded.
+    /// Encoded bytes; `None` for a separate file, which is read when it is decoded.
     bytes: Option<Cow<'a, [u8]>>,
     header: TextureHeader,
-    /// Formats of blocks to which it may be transcoded.
+    /// Block formats to which it may be transcoded.
     formats: BlockFormats,
-    /// What decoding takes beside the picture itself, the file's bytes included.
+    /// Bytes that decoding needs in addition to the image, the encoded bytes included.
     working_bytes: u64,
 }
 
-/// Bytes of a file in which a header is looked for first; some have large metadata before it.
+/// Size of the prefix that is first searched for a header; some files have large metadata before it.
 const START_BYTES: u64 = 1 << 16;
 
-/// Decodes the images with these indices in the file, in this order, none of them twice. `textures` say in which roles the
-/// images are read; those that `computed` ones are made from stay RGBA8.
+/// Decodes the images with these distinct file indices, in this order. `textures` define the roles of the images.
+/// Images from which `computed` ones are made stay RGBA8.
 ///
-/// All headers are read before any pixel, so that whether there is memory for all does not depend on the order in which
-/// threads finish. The first error in the order of the list is reported, so messages do not depend on it either.
+/// All headers are read before any pixel, so that the memory check does not depend on thread timing. The first error in
+/// list order is reported, for the same reason.
 pub(super) fn decode(
     source: &Source<'_>,
     indices: &[usize],
@@ -79,12 +79,12 @@ pub(super) fn decode(
         if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     stopped?;
-    // After an error the images behind it may be missing, the ones before it never are.
+    // After an error, later images may be missing, but no earlier ones.
     images.into_iter().flatten().collect()
 }
 
-/// Formats for the image at this place of the list. A normal map is not made ETC2, whose blocks vary along one line of
-/// colors at a time and thus bend normals.
+/// Returns the block formats for the image at this position of the list. Normal maps do not become ETC2: its blocks
+/// vary along one color axis at a time, which distorts normals.
 fn formats(of_device: BlockFormats, textures: &[Texture], place: usize) -> BlockFormats {
     let is_normal = |texture: &Texture| texture.image.index() == place && texture.role == TextureRole::Normal;
     BlockFormats { etc2: of_device.etc2 && !textures.iter().any(is_normal), ..of_device }
@@ -95,7 +95,7 @@ fn over(image: &Encoded<'_>, budget: OverBudget) -> SceneError {
     SceneError::Memory { file: image.file.clone(), at: format!("{}, {width}×{height}", image.at), budget }
 }
 
-/// Where an image's bytes are, and what its header says.
+/// Locates the bytes of an image and reads its header.
 fn find<'a>(
     source: &'a Source<'_>,
     json: &json::Image,

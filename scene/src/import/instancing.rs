@@ -1,4 +1,4 @@
-//! EXT_mesh_gpu_instancing: one mesh at many places of its node.
+//! EXT_mesh_gpu_instancing: several instances of a node's mesh.
 
 use super::accessor::floats;
 use super::limits::MAX_INSTANCES;
@@ -6,11 +6,11 @@ use super::source::Source;
 use crate::error::{Quantity, SceneError};
 use glam::{DMat4, DQuat, DVec3};
 
-/// Reads the transforms of a node's instances to the node's axes; `None` for a node without the extension.
+/// Reads the instance transforms of a node, relative to the node; `None` for a node without the extension.
 ///
 /// # Errors
 ///
-/// Fails for attributes of different lengths, values that are not finite, rotations without length, and too many
+/// Fails for attributes of different lengths, values that are not finite, rotations of zero length, and too many
 /// instances.
 pub(super) fn read(source: &Source<'_>, node: usize, at: &str) -> Result<Option<Vec<DMat4>>, SceneError> {
     let extensions = source.root.nodes[node].extensions.as_ref();
@@ -22,7 +22,7 @@ pub(super) fn read(source: &Source<'_>, node: usize, at: &str) -> Result<Option<
         None => Ok(None),
         Some(index) => match index.as_u64().and_then(|index| usize::try_from(index).ok()) {
             Some(index) => Ok(Some(index)),
-            None => Err(source.malformed(&at, format!("its {name} is no index of an accessor"))),
+            None => Err(source.malformed(&at, format!("its {name} is not an accessor index"))),
         },
     };
     let vectors =
@@ -34,7 +34,7 @@ pub(super) fn read(source: &Source<'_>, node: usize, at: &str) -> Result<Option<
     let lengths =
         [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
     let Some(count) = lengths.into_iter().flatten().next() else {
-        // Custom attributes alone place nothing.
+        // Custom attributes alone define no transforms.
         return Ok(None);
     };
     if lengths.into_iter().flatten().any(|length| length != count) {

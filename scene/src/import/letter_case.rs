@@ -1,15 +1,15 @@
-//! Files whose names differ from a URI in letter case only, as files of case-insensitive systems do.
+//! Lookup of files whose names differ from a URI only in letter case, as written on case-insensitive systems.
 
 use std::fs::read_dir;
 use std::path::{Component, Path, PathBuf};
 
 use super::uri::is_inside;
 
-/// Names of a folder that are looked at.
+/// Maximum number of names searched in a folder.
 const MAX_NAMES: usize = 1 << 16;
 
-/// Returns the path from the scene's `folder` to a file that `path`, which does not exist, would name if letter case did
-/// not count. Returns `None` for paths outside of the folder.
+/// Returns the path of a file in the scene's `folder` that equals `path`, which does not exist, if letter case is
+/// ignored. `None` for paths outside of the folder.
 pub(super) fn candidate(folder: &Path, path: &Path) -> Option<PathBuf> {
     let mut found = PathBuf::new();
     for part in path.strip_prefix(folder).ok()?.components() {
@@ -32,7 +32,7 @@ pub(super) fn candidate(folder: &Path, path: &Path) -> Option<PathBuf> {
     (file.is_file() && is_inside(folder, &file)).then_some(found)
 }
 
-/// Returns the first name in a folder, by its letters, that equals `name` in lower case.
+/// Returns the alphabetically first name in a folder that equals the lower-case `name` if letter case is ignored.
 fn name_like(folder: &Path, name: &str) -> Option<std::ffi::OsString> {
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let lower = name.to_lowercase();

@@ -14,7 +14,7 @@ use crate::draw_options::DEFAULT_MASK;
 use crate::error::{SceneError, one_line};
 use crate::light::{Light, LightKind};
 
-/// Appends the lights of all nodes. Returns the node of each, by its place, and its index in the file.
+/// Appends the lights of all nodes; returns the node (by list position) and the file index of each.
 pub(super) fn import(
     source: &Source<'_>,
     nodes: &[FlatNode],
@@ -73,7 +73,7 @@ pub(super) fn import(
     Ok(attached)
 }
 
-/// The shape and strength, every number in range.
+/// Returns the shape and strength of a light, with every number validated.
 fn kind(json: &JsonLight, at: &str, warnings: &mut Warnings) -> Result<LightKind, String> {
     let Checked::Valid(shape) = json.type_ else {
         return Err("unknown type".into());
@@ -97,7 +97,7 @@ fn kind(json: &JsonLight, at: &str, warnings: &mut Warnings) -> Result<LightKind
             if !(inner.is_finite() && outer.is_finite() && inner >= 0.0 && outer > 0.0) {
                 return Err(format!("its cone angles are {inner} and {outer}"));
             }
-            // Slightly apart, so that the falloff between them stays a number.
+            // Keeps the cone angles slightly apart, so that the falloff stays finite.
             let outer_cone_rad = outer.min(FRAC_PI_2);
             let inner_cone_rad = inner.min(outer_cone_rad * 0.999);
             if (inner_cone_rad, outer_cone_rad) != (inner, outer) {

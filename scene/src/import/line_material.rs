@@ -8,19 +8,19 @@ use super::topology::topology;
 use crate::material::{ClearCoat, Material};
 use crate::mesh::Topology;
 
-/// Streams of lines or points that decide how they are shaded.
+/// Vertex streams of lines or points that affect shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum LineStreams {
-    /// No normals: no lighting.
+    /// Without normals: unlit.
     Bare,
-    /// Normals without tangents: lighting without normal maps.
+    /// Normals without tangents: lit without normal maps.
     Normals,
-    /// Normals and tangents: lighting as of triangles.
+    /// Normals and tangents: lit like triangles.
     Tangents,
 }
 
 impl LineStreams {
-    /// The streams of a primitive; none of triangles, or of an unknown mode.
+    /// Returns the streams of a primitive; `None` for triangles or an unknown mode.
     pub fn of(primitive: &Primitive) -> Option<Self> {
         let has = |semantic| primitive.attributes.contains_key(&Checked::Valid(semantic));
         match primitive.mode {
@@ -34,13 +34,13 @@ impl LineStreams {
     }
 }
 
-/// The form of a material in which lines and points with these streams are shaded. Without normals that is the sum of base
-/// color and emission; without tangents normal maps are left out.
+/// Returns the variant of a material for lines and points with these streams. Without normals it is unlit and shows
+/// base color plus emission; without tangents it has no normal maps.
 pub(super) fn for_lines(material: &Material, streams: LineStreams) -> Material {
     let Material { name, base_color, emissive, emissive_unit, alpha, double_sided, .. } = material.clone();
     let Material { base_color_texture, emissive_texture, clear_coat, .. } = *material;
     match streams {
-        // KHR_materials_unlit shows the base color alone.
+        // KHR_materials_unlit shows only the base color.
         _ if material.unlit => Material { emissive: Vec3::ZERO, emissive_texture: None, ..material.clone() },
         LineStreams::Tangents => material.clone(),
         LineStreams::Normals => Material {

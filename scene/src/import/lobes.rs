@@ -1,7 +1,7 @@
-//! The lobes of a material: the KHR_materials extensions that add to the metal-rough base.
+//! Material lobes: the KHR_materials extensions of the metallic-roughness model.
 //!
-//! A lobe that its factor switches off is left out, with its textures: nothing of it could be seen. A lobe that an
-//! animation changes is kept.
+//! A lobe that its factor disables is omitted with its textures, since it has no effect, unless an animation changes
+//! it.
 
 use glam::Vec3;
 use gltf_json as json;
@@ -15,7 +15,7 @@ use crate::material::{
 };
 use crate::texture::{TextureRole, TextureSlot};
 
-/// What reading a material needs beside its JSON.
+/// Context for reading a material.
 struct Reading<'a, 'b> {
     source: &'a Source<'a>,
     textures: &'b mut Textures,
@@ -149,7 +149,7 @@ impl Reading<'_, '_> {
         }
         let texture = self.slot(json, "iridescenceTexture", TextureRole::Linear)?;
         let thickness_texture = self.slot(json, "iridescenceThicknessTexture", TextureRole::Linear)?;
-        // Without a texture the film has one thickness, and without thickness there is no film.
+        // Without a texture the film has uniform thickness; zero thickness means no film.
         if thickness_texture.is_none() && max_thickness_nm == 0.0 && !json.is_animated() {
             return Ok(None);
         }

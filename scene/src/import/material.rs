@@ -1,4 +1,4 @@
-//! Metal-rough materials (glTF 2.0, section 3.9) and the extensions that change them.
+//! Metallic-roughness materials (glTF 2.0, section 3.9) and their extensions.
 
 use std::collections::BTreeMap;
 
@@ -19,27 +19,27 @@ use crate::material::MaterialId;
 use crate::material::{AlphaMode, EmissiveUnit, Material};
 use crate::texture::{Sampler, Texture, TextureRole, TextureSlot};
 
-/// The materials of a scene as primitives ask for them, each once.
+/// Materials of a scene, imported on first use, each once.
 pub(super) struct Materials<'a> {
     source: &'a Source<'a>,
-    /// From the index in the file; `None` is glTF's default material.
+    /// Imported materials by file index; `None` is glTF's default material.
     known: BTreeMap<Option<usize>, MaterialId>,
-    /// Forms of them for lines and points, by the number of the material and what vertices have.
+    /// Variants for lines and points, by material number and vertex streams.
     without_area: BTreeMap<(usize, LineStreams), MaterialId>,
     materials: Vec<Material>,
     textures: Textures,
 }
 
-/// What the materials of a scene came to.
+/// Results of importing the materials of a scene.
 pub(super) struct Tables {
-    /// Ids by the index in the file; `None` is glTF's default material.
+    /// Ids by file index; `None` is glTF's default material.
     pub known: BTreeMap<Option<usize>, MaterialId>,
     pub materials: Vec<Material>,
     pub textures: Vec<Texture>,
     pub samplers: Vec<Sampler>,
-    /// Indices of images in the file.
+    /// File indices of the images.
     pub images: Vec<usize>,
-    /// Images that are computed from those of the file, behind them.
+    /// Images computed from those of the file; their ids follow.
     pub computed: Vec<Roughness>,
 }
 
@@ -49,7 +49,7 @@ impl<'a> Materials<'a> {
         Self { source, known, without_area, materials: Vec::new(), textures: Textures::default() }
     }
 
-    /// The material of a primitive, named `at`.
+    /// Returns the material of a primitive, named `at`.
     pub fn import(
         &mut self,
         index: Option<usize>,
@@ -73,8 +73,8 @@ impl<'a> Materials<'a> {
         Ok(id)
     }
 
-    /// The form of a material for a primitive: the material itself for triangles, and what [`for_lines`] makes of it for lines
-    /// and points.
+    /// Returns the variant of a material for a primitive: the material itself for triangles, and that of [`for_lines`]
+    /// for lines and points.
     pub fn for_primitive(&mut self, id: MaterialId, primitive: &json::mesh::Primitive) -> MaterialId {
         let Some(streams) = LineStreams::of(primitive) else { return id };
         if let Some(known) = self.without_area.get(&(id.index(), streams)) {
@@ -171,7 +171,7 @@ impl<'a> Materials<'a> {
     }
 }
 
-/// A factor in 0…1; others are clamped with a warning, and what is not finite is refused.
+/// Returns a factor in 0…1. Others are clamped with a warning; factors that are not finite are errors.
 fn in_unit_range(
     source: &Source<'_>,
     at: &str,
@@ -205,7 +205,7 @@ fn alpha_mode(json: &json::Material) -> Result<AlphaMode, String> {
     }
 }
 
-/// Emission: the factor, times KHR_materials_emissive_strength, which makes it nits.
+/// Returns the emissive factor; KHR_materials_emissive_strength multiplies it and makes it nits.
 fn emissive(json: &json::Material) -> Result<(Vec3, EmissiveUnit), String> {
     let extensions = json.extensions.as_ref();
     let strength = extensions.and_then(|e| e.emissive_strength.as_ref());
@@ -221,7 +221,7 @@ fn emissive(json: &json::Material) -> Result<(Vec3, EmissiveUnit), String> {
     }
 }
 
-/// KHR_materials_ior.
+/// Returns the index of refraction (KHR_materials_ior).
 fn ior(source: &Source<'_>, at: &str, json: &json::Material) -> Result<f32, SceneError> {
     let Some(extension) = Object::of_material(source, at, json, "KHR_materials_ior")? else {
         return Ok(1.5);
@@ -257,7 +257,7 @@ fn of_occlusion(info: Option<&material::OcclusionTexture>) -> Option<Reference<'
     Some(with_json(&info.index, info.tex_coord, transform))
 }
 
-/// A reference whose transform the schema leaves as JSON.
+/// Returns a texture reference whose transform the schema leaves as JSON.
 fn with_json<'a>(texture: &Index<json::Texture>, uv_set: u32, transform: Option<&'a json::Value>) -> Reference<'a> {
     Reference { texture: texture.value(), uv_set, transform: transform.map(TransformSource::Json) }
 }

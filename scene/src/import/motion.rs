@@ -19,30 +19,30 @@ use crate::motion::{
 };
 use crate::scene::Scene;
 
-/// Nodes and places of the instances of a scene, in their order.
+/// Nodes and transforms of the instances of a scene, in their order.
 #[derive(Default)]
 pub(super) struct Placed {
-    /// Place of each instance's node in the list of nodes.
+    /// Node of each instance, by list position.
     pub nodes: Vec<usize>,
-    /// Transform of each instance to its node's axes.
+    /// Transform of each instance relative to its node.
     pub node_from_model: Vec<DMat4>,
 }
 
-/// Instances, lights and cameras that hang on nodes, and materials.
+/// Instances, lights and cameras attached to nodes, and materials.
 pub(super) struct Attachments {
-    /// Nodes and places of instances.
+    /// Nodes and transforms of instances.
     pub placed: Placed,
     /// Nodes of lights.
     pub lights: Vec<Attached>,
     /// Nodes of cameras.
     pub cameras: Vec<Attached>,
-    /// Materials by their index in the file.
+    /// Materials by file index.
     pub materials: BTreeMap<Option<usize>, MaterialId>,
 }
 
-/// Imports nodes, skins, bodies and animations into [`Scene::motion`], and poses the scene at rest.
+/// Imports nodes, skins, deformable meshes and animations into [`Scene::motion`], and applies the rest pose.
 ///
-/// A file without animations, skins and morph targets imports nothing.
+/// A file without animations, skins and morph targets imports no motion.
 pub(super) fn import(
     source: &Source<'_>,
     nodes: &[FlatNode],
@@ -53,7 +53,7 @@ pub(super) fn import(
     let mut motion = Motion { nodes: nodes.iter().map(|node| rig_node(source, node)).collect(), ..Motion::default() };
     let mut places = vec![None; source.root.nodes.len()];
     nodes.iter().enumerate().for_each(|(place, node)| places[node.index] = Some(place));
-    // Skins by their index in the file. Skins that no mesh uses are not read.
+    // Skins by file index; unused skins are not read.
     let mut skins = BTreeMap::new();
     for (instance, place) in attached.placed.nodes.iter().enumerate() {
         let id = scene.instances[instance].mesh;
@@ -140,7 +140,7 @@ fn rig_node(source: &Source<'_>, node: &FlatNode) -> Node {
     Node { parent: node.parent, rest: node.rest, weights }
 }
 
-/// Reads the skin that the node `at` uses.
+/// Reads the skin of the node `at`.
 fn read_skin(
     source: &Source<'_>,
     at: &str,
@@ -155,7 +155,7 @@ fn read_skin(
         let index = joint.value();
         let found =
             places.get(index).ok_or_else(|| source.malformed(&at, beyond("node", index, &source.root.nodes)))?;
-        found.ok_or_else(|| source.malformed(&at, format!("its joint, node {index}, hangs on no root")))
+        found.ok_or_else(|| source.malformed(&at, format!("its joint, node {index}, is not below a root node")))
     };
     let joints: Vec<usize> = skin.joints.iter().map(place).collect::<Result<_, _>>()?;
     if joints.is_empty() {
@@ -223,7 +223,7 @@ fn read_animation(
     Ok(Animation { name, channels })
 }
 
-/// Finds the property that a channel changes; `None` for a channel that is ignored.
+/// Returns the property that a channel animates; `None` for an ignored channel.
 fn aim(
     source: &Source<'_>,
     (animation, channel): (usize, usize),
@@ -262,11 +262,11 @@ fn aim(
     Ok(Some(Pointed { targets: vec![Target::Node(place, property)], width, scale: Scale::None }))
 }
 
-/// Reads the keys of a sampler. Keys that no curve can have are a reason to leave the channel out: the inner error.
+/// Reads the keyframes of a sampler. The inner error is the reason to skip a channel with unusable keyframes.
 ///
 /// # Errors
 ///
-/// Fails for accessors that are not there or exceed their bytes.
+/// Fails for accessors that do not exist or exceed their bytes.
 fn read_curve(
     source: &Source<'_>,
     at: &str,

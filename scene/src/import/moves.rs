@@ -9,15 +9,15 @@ use super::stream::{finite, stream};
 use crate::error::SceneError;
 use crate::motion::{InfluenceSet, MorphTarget, Moves};
 
-/// Largest distance from 1 at which the sum of a vertex's weights counts as rounding: bytes round each of four weights by
-/// up to 0.002. A sum farther off is normalized with a warning.
+/// Largest deviation from 1 of a vertex's weight sum that counts as rounding: 8-bit weights round by up to 0.002 each.
+/// Larger deviations are normalized with a warning.
 const ROUNDING: f32 = 0.02;
 
-/// Accessors of skin influences and morph targets, and the node whose mesh they move.
+/// Accessors of skin influences and morph targets, and the node whose mesh they deform.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct MovesKey {
     node: usize,
-    /// Number of the primitive, of one with a skin: each has a body of its own.
+    /// Number of a skinned primitive, which has a deformable mesh of its own.
     primitive: Option<usize>,
     /// Joints and weights of each set.
     influences: Vec<[Values; 2]>,
@@ -25,7 +25,7 @@ pub(super) struct MovesKey {
 }
 
 impl MovesKey {
-    /// Returns the accessors of primitive `number` of a mesh, or `None` for one that nothing deforms.
+    /// Returns the accessors of primitive `number` of a mesh, or `None` if nothing deforms it.
     pub fn new(primitive: &Primitive, number: usize, node: usize, skinned: bool) -> Option<Self> {
         let values = |semantic| packed::values(primitive, &semantic);
         let set = |number| values(Semantic::Joints(number)).zip(values(Semantic::Weights(number)));
@@ -39,8 +39,8 @@ impl MovesKey {
     }
 }
 
-/// Reads the influences and targets of `vertices` vertices. Weights are normalized; joints are checked where the skin is
-/// known.
+/// Reads the influences and targets of `vertices` vertices. Weights are normalized; joints are checked later, against
+/// the skin.
 pub(super) fn read(
     source: &Source<'_>,
     key: &MovesKey,
@@ -79,9 +79,9 @@ pub(super) fn read(
     Ok(moves)
 }
 
-/// Makes the weights of each vertex add up to 1 over all sets; returns the number of vertices whose weights were wrong.
+/// Normalizes the weights of each vertex to a sum of 1 over all sets; returns the number of corrected vertices.
 ///
-/// Negative and non-finite weights count as 0. A vertex without any weight follows its first joint, as in three.js.
+/// Negative and non-finite weights count as 0. A vertex without weights follows its first joint, as in three.js.
 fn normalize(sets: &mut [InfluenceSet], vertices: usize) -> usize {
     let mut repaired = 0;
     for vertex in 0..if sets.is_empty() { 0 } else { vertices } {

@@ -1,4 +1,4 @@
-//! The node hierarchy, flattened to world transforms.
+//! Node hierarchy, flattened to world transforms.
 
 use glam::{DMat4, DQuat, DVec3};
 use gltf_json::Value;
@@ -9,51 +9,51 @@ use super::source::{Source, Warnings, beyond};
 use crate::error::{Quantity, SceneError, one_line};
 use crate::motion::Transform;
 
-/// A node with its place in the world and what hangs on it.
+/// A node with its world transform and attached objects.
 #[derive(Clone, Debug)]
 pub(super) struct FlatNode {
-    /// Its name, or empty.
+    /// Name; may be empty.
     pub name: String,
-    /// For messages: `node 3 "name"`.
+    /// Place for messages: `node 3 "name"`.
     pub at: String,
-    /// Its number in the file.
+    /// File index.
     pub index: usize,
-    /// Its parent's place in the list of these.
+    /// List position of the parent.
     pub parent: Option<usize>,
-    /// Its own transform.
+    /// Local transform.
     pub rest: Transform,
-    /// Transform to world axes, in meters.
+    /// Transform to world space, in meters.
     pub world_from_node: DMat4,
     /// True if the node and all its ancestors are visible (KHR_node_visibility).
     pub is_visible: bool,
-    /// Index of its skin in the file, unchecked.
+    /// File index of the skin, unchecked.
     pub skin: Option<usize>,
-    /// Weights of its mesh's morph targets, if it has its own.
+    /// Weights of the morph targets, if the node sets them.
     pub weights: Option<Vec<f32>>,
-    /// Index of its mesh in the file, unchecked.
+    /// File index of the mesh, unchecked.
     pub mesh: Option<usize>,
-    /// Index of its camera in the file, unchecked.
+    /// File index of the camera, unchecked.
     pub camera: Option<usize>,
-    /// Index of its light in the file, unchecked.
+    /// File index of the light, unchecked.
     pub light: Option<usize>,
 }
 
-/// A light or camera that hangs on a node.
+/// A light or camera attached to a node.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Attached {
-    /// Place of the node in the list of nodes.
+    /// List position of the node.
     pub node: usize,
-    /// Index of the light or camera in the file.
+    /// File index of the light or camera.
     pub index: usize,
 }
 
-/// Walks the default scene, or the first, or all roots, parents before children. Transforms
-/// accumulate in f64.
+/// Flattens the default scene, otherwise the first scene, otherwise all roots; parents precede children. Transforms are
+/// accumulated in f64.
 ///
-/// The trees of joints that are not in that scene follow; of those nodes only the transforms count.
+/// Joints outside of that scene follow with their trees; only their transforms are used.
 ///
-/// The hierarchy must be a forest (section 3.5.2): a node that is reached twice, by a cycle or from
-/// two parents, is an error. The walk keeps its own stack, so depth is no danger.
+/// The hierarchy must be a forest (section 3.5.2): a node that is reached twice, by a cycle or from two parents, is an
+/// error. The traversal uses an explicit stack, so its depth is not limited.
 pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Vec<FlatNode>, SceneError> {
     let nodes = &source.root.nodes;
     if nodes.len() > MAX_NODES {
@@ -73,7 +73,7 @@ pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Ve
             continue;
         }
         warnings.push(format!("skin {skin}: joints outside of the scene keep their place in their own hierarchy"));
-        // The root, or any node of a cycle.
+        // Root of the joint, or any node of a cycle.
         let mut root = joint;
         let mut steps = 0;
         while let Some(parent) = parents[root].filter(|parent| !walk.reached[*parent] && steps < nodes.len()) {
@@ -84,7 +84,7 @@ pub(super) fn flatten(source: &Source<'_>, warnings: &mut Warnings) -> Result<Ve
     Ok(walk.flat)
 }
 
-/// A walk over the hierarchy and the nodes it reached.
+/// Traversal of the hierarchy, with the nodes reached so far.
 struct Walk<'a> {
     source: &'a Source<'a>,
     reached: Vec<bool>,
@@ -92,7 +92,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Appends the trees below `roots`. Nodes that are not in the scene carry no mesh, camera or light.
+    /// Appends the trees below `roots`. Nodes outside of the scene get no mesh, camera or light.
     fn walk(&mut self, roots: Vec<usize>, is_in_scene: bool) -> Result<(), SceneError> {
         let (source, nodes) = (self.source, &self.source.root.nodes);
         let mut stack: Vec<(usize, Option<usize>)> = Vec::new();
@@ -148,7 +148,7 @@ fn is_visible(node: &Node) -> bool {
     extension.and_then(|extension| extension.get("visible")).and_then(Value::as_bool).unwrap_or(true)
 }
 
-/// Returns the parent of each node; of two parents the first.
+/// Returns the parent of each node; the first if there are two.
 fn parents(nodes: &[Node]) -> Vec<Option<usize>> {
     let mut parents = vec![None; nodes.len()];
     for (parent, node) in nodes.iter().enumerate() {
@@ -161,7 +161,7 @@ fn parents(nodes: &[Node]) -> Vec<Option<usize>> {
     parents
 }
 
-/// The nodes to start from.
+/// Returns the root nodes of the traversal.
 fn roots(source: &Source<'_>, parents: &[Option<usize>]) -> Result<Vec<usize>, SceneError> {
     let scenes = &source.root.scenes;
     if let Some(default) = source.root.scene
@@ -177,7 +177,7 @@ fn roots(source: &Source<'_>, parents: &[Option<usize>]) -> Result<Vec<usize>, S
     Ok((0..parents.len()).filter(|i| parents[*i].is_none()).collect())
 }
 
-/// A node's own transform (section 3.5.3): a column-major matrix, or scale, rotation, translation.
+/// Returns a node's local transform (section 3.5.3): a column-major matrix, or scale, rotation, translation.
 fn own_transform(node: &Node) -> Result<Transform, String> {
     let transform = if let Some(matrix) = node.matrix {
         let mut matrix = DMat4::from_cols_array(&matrix.map(f64::from));

@@ -1,4 +1,4 @@
-//! Extensions of materials that the schema leaves as JSON: their members, checked.
+//! Material extensions that the schema leaves as JSON, with checked members.
 
 use glam::Vec3;
 use gltf_json as json;
@@ -8,16 +8,16 @@ use super::source::{Source, Warnings};
 use super::texture::{Reference, TransformSource};
 use crate::error::SceneError;
 
-/// One extension of one material.
+/// An extension of a material.
 pub(super) struct Object<'a> {
     source: &'a Source<'a>,
-    /// `material 3: KHR_materials_sheen`, for messages.
+    /// Place for messages: `material 3: KHR_materials_sheen`.
     at: String,
     json: &'a Value,
 }
 
 impl<'a> Object<'a> {
-    /// The extension `name` of a material, if it has it.
+    /// Returns the extension `name` of a material, if present.
     pub fn of_material(
         source: &'a Source<'a>,
         at: &str,
@@ -32,37 +32,37 @@ impl<'a> Object<'a> {
         if json.is_object() {
             Ok(Some(Self { source, at, json }))
         } else {
-            Err(source.malformed(&at, "it is no object"))
+            Err(source.malformed(&at, "it is not an object"))
         }
     }
 
-    /// The place in the file, for messages.
+    /// Returns the place in the file, for messages.
     pub fn at(&self) -> &str {
         &self.at
     }
 
-    /// Returns whether an animation changes a property of this extension, so that it may show later.
+    /// Returns true if an animation changes a property of this extension, which may thus become visible.
     pub fn is_animated(&self) -> bool {
         self.source.is_animated(&self.at)
     }
 
-    /// An error about this extension.
+    /// Returns an error about this extension.
     pub fn malformed(&self, reason: impl Into<String>) -> SceneError {
         self.source.malformed(&self.at, reason)
     }
 
-    /// A number that fits 32 bits, or `default`.
+    /// Returns a number in f32 range, or `default`.
     pub fn number(&self, key: &str, default: f32) -> Result<f32, SceneError> {
         self.json.get(key).map_or(Ok(default), |value| self.finite(key, value))
     }
 
-    /// A number in 0…1; others are clamped with a warning.
+    /// Returns a number in 0…1; others are clamped with a warning.
     pub fn unit(&self, key: &str, default: f32, warnings: &mut Warnings) -> Result<f32, SceneError> {
         let value = self.number(key, default)?;
         Ok(self.clamped(key, Vec3::splat(value), 1.0, warnings).x)
     }
 
-    /// A number of `min` or more; a smaller one is raised with a warning.
+    /// Returns a number of at least `min`; a smaller one is raised with a warning.
     pub fn at_least(&self, key: &str, default: f32, min: f32, warnings: &mut Warnings) -> Result<f32, SceneError> {
         let value = self.number(key, default)?;
         if value < min {
@@ -71,12 +71,12 @@ impl<'a> Object<'a> {
         Ok(value.max(min))
     }
 
-    /// A color with channels in 0…`most`; others are clamped with a warning.
+    /// Returns a color with channels in 0…`most`; others are clamped with a warning.
     pub fn color(&self, key: &str, default: Vec3, most: f32, warnings: &mut Warnings) -> Result<Vec3, SceneError> {
         Ok(self.clamped(key, Vec3::from_array(self.vector(key, default.to_array())?), most, warnings))
     }
 
-    /// `N` numbers that fit 32 bits, or `default`.
+    /// Returns `N` numbers in f32 range, or `default`.
     pub fn vector<const N: usize>(&self, key: &str, default: [f32; N]) -> Result<[f32; N], SceneError> {
         let Some(value) = self.json.get(key) else {
             return Ok(default);
@@ -90,7 +90,7 @@ impl<'a> Object<'a> {
         Ok(vector)
     }
 
-    /// A texture reference.
+    /// Returns a texture reference.
     pub fn texture(&self, key: &str) -> Result<Option<Reference<'a>>, SceneError> {
         let Some(info) = self.json.get(key) else {
             return Ok(None);
@@ -106,7 +106,7 @@ impl<'a> Object<'a> {
         Ok(Some(Reference { texture: texture as usize, uv_set, transform: transform.map(TransformSource::Json) }))
     }
 
-    /// The `scale` of a normal texture, 1 unless it is given.
+    /// Returns the `scale` of a normal texture, by default 1.
     pub fn normal_scale(&self, key: &str) -> Result<f32, SceneError> {
         let scale = self.json.get(key).and_then(|info| info.get("scale"));
         scale.map_or(Ok(1.0), |value| self.finite(&format!("{key} scale"), value))
@@ -114,7 +114,7 @@ impl<'a> Object<'a> {
 
     fn finite(&self, key: &str, value: &Value) -> Result<f32, SceneError> {
         let Some(number) = value.as_f64() else {
-            return Err(self.malformed(format!("its {key} is no number")));
+            return Err(self.malformed(format!("its {key} is not a number")));
         };
         let number = number as f32;
         if number.is_finite() { Ok(number) } else { Err(self.malformed(format!("its {key} is {number}"))) }

@@ -1,4 +1,4 @@
-//! Meshes that `KHR_draco_mesh_compression` stores as a whole, once they are decoded.
+//! Decoded meshes of `KHR_draco_mesh_compression`.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -11,12 +11,13 @@ use gltf_json::validation::Checked;
 /// Name of the extension.
 pub(super) const NAME: &str = "KHR_draco_mesh_compression";
 
-/// Place of the values of an accessor.
+/// Location of the values of an accessor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Values {
     /// Index of the accessor, unchecked.
     pub accessor: usize,
-    /// Buffer view of the compressed mesh, and id of the attribute in it. `None` if the accessor's own view has the values.
+    /// Buffer view of the compressed mesh, and id of the attribute in it. `None` if the values are in the accessor's
+    /// own view.
     pub packed: Option<(usize, u32)>,
 }
 
@@ -32,7 +33,7 @@ pub(super) struct Packed<'a> {
     json: &'a Value,
 }
 
-/// Returns the extension of a primitive, if it has one that this build decodes. The extension applies to triangles alone.
+/// Returns the extension of a primitive, if present and decoded by this build. It applies to triangles only.
 pub(super) fn of(primitive: &Primitive) -> Option<Packed<'_>> {
     let triangles = matches!(primitive.mode, Checked::Valid(Mode::Triangles | Mode::TriangleStrip));
     let json = primitive.extensions.as_ref()?.others.get(NAME)?;
@@ -40,21 +41,21 @@ pub(super) fn of(primitive: &Primitive) -> Option<Packed<'_>> {
 }
 
 impl Packed<'_> {
-    /// Index of the buffer view with the compressed mesh, unchecked.
+    /// Returns the index of the buffer view with the compressed mesh, unchecked.
     pub fn view(self) -> Option<usize> {
         self.json.get("bufferView")?.as_u64()?.try_into().ok()
     }
 
-    /// Id of an attribute in the compressed mesh; `None` if the attribute is not compressed. An id that is no number of
-    /// 32 bits is `Err`.
+    /// Returns the id of an attribute in the compressed mesh, or `None` if the attribute is not compressed. An id that
+    /// is not a 32-bit number is `Err`.
     pub fn id(self, semantic: &str) -> Option<Result<u32, ()>> {
         let id = self.json.get("attributes")?.get(semantic)?;
         Some(id.as_u64().and_then(|id| id.try_into().ok()).ok_or(()))
     }
 }
 
-/// Returns the place of the values of an attribute, if the primitive has it. An id in the extension that is no number of
-/// 32 bits is no place, which decoding has refused before.
+/// Returns the location of the values of an attribute, if the primitive has it. Invalid ids, which decoding has
+/// rejected before, give `None`.
 pub(super) fn values(primitive: &Primitive, semantic: &Semantic) -> Option<Values> {
     let accessor = primitive.attributes.get(&Checked::Valid(semantic.clone()))?.value();
     let packed = of(primitive).and_then(|extension| {
@@ -67,9 +68,9 @@ pub(super) fn values(primitive: &Primitive, semantic: &Semantic) -> Option<Value
 /// A decoded mesh.
 #[derive(Debug, Default)]
 pub(super) struct PackedMesh {
-    /// Corners of the triangles.
+    /// Corner indices of the triangles.
     pub indices: Vec<u32>,
-    /// Attributes that a primitive names, by id.
+    /// Attributes that a primitive uses, by id.
     pub attributes: BTreeMap<u32, PackedAttribute>,
 }
 
@@ -80,7 +81,7 @@ pub(super) struct PackedAttribute {
     pub kind: Kind,
     /// Components of a value.
     pub width: usize,
-    /// The values without gaps, little-endian.
+    /// Tightly packed values, little-endian.
     pub bytes: Vec<u8>,
 }
 
@@ -120,7 +121,7 @@ impl Kind {
     }
 }
 
-/// The type that an accessor states.
+/// Returns the component type of an accessor.
 fn kind_of(component: ComponentType) -> Kind {
     match component {
         ComponentType::I8 => Kind::I8,
@@ -133,12 +134,12 @@ fn kind_of(component: ComponentType) -> Kind {
 }
 
 impl PackedAttribute {
-    /// Returns the values with components of the type that an accessor states. Integers may have another size in the
-    /// stream, since encoders widen them, as long as each of them fits.
+    /// Converts the values to the component type of an accessor. Encoders widen integers, so their size may differ in
+    /// the stream; each value must fit.
     ///
     /// # Errors
     ///
-    /// The reason, for integers that do not fit, and for floats in place of integers or integers in place of floats.
+    /// Returns the reason if an integer does not fit, or if floats and integers are mixed up.
     pub fn values(&self, component: ComponentType) -> Result<Cow<'_, [u8]>, String> {
         let wanted = kind_of(component);
         if wanted == self.kind {

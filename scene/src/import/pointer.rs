@@ -1,4 +1,4 @@
-//! KHR_animation_pointer: the properties that JSON pointers of animation channels name.
+//! KHR_animation_pointer: properties targeted by JSON pointers of animation channels.
 
 use serde_json::Value;
 
@@ -8,42 +8,42 @@ use crate::material::MaterialId;
 use crate::motion::property::{EMISSIVE, STRENGTH};
 use crate::motion::{CameraProperty, LightProperty, MaterialProperty, NodeProperty, Target};
 
-/// The parts of a scene that a pointer may name.
+/// Parts of a scene that a pointer may refer to.
 pub(super) struct Parts<'a> {
-    /// Place of each node of the file in the list of nodes.
+    /// List position of each node of the file.
     pub places: &'a [Option<usize>],
-    /// Index in the file of each light of the scene.
+    /// File index of each light of the scene.
     pub lights: &'a [usize],
-    /// Index in the file of each camera of the scene.
+    /// File index of each camera of the scene.
     pub cameras: &'a [usize],
-    /// Materials of the scene by their index in the file.
+    /// Materials of the scene by file index.
     pub material: &'a dyn Fn(usize) -> Option<MaterialId>,
-    /// Number of morph targets of a node, by its place.
+    /// Number of morph targets of a node, by its list position.
     pub targets: &'a dyn Fn(usize) -> usize,
 }
 
-/// Properties that a pointer names.
+/// Properties targeted by a pointer.
 pub(super) struct Pointed {
-    /// The targets: several where nodes share a light or a camera; none where the scene does not use the object.
+    /// Targets: several if nodes share a light or a camera; none if the scene does not use the object.
     pub targets: Vec<Target>,
-    /// Numbers of a value.
+    /// Numbers per value.
     pub width: usize,
-    /// Rows of factors that turn a value of the file into values of the target; `None` for equal values.
+    /// Conversion from values of the file to values of the target.
     pub scale: Scale,
 }
 
-/// Conversion of values of a file to values of a property.
+/// Conversion from values of the file to values of a property.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Scale {
-    /// They are equal.
+    /// Values are used unchanged.
     None,
-    /// Each number is multiplied.
+    /// Each number is multiplied by a factor.
     By(f32),
-    /// One number becomes three, by these factors.
+    /// One number becomes three, multiplied by these factors.
     Spread([f32; 3]),
 }
 
-/// Resolves a pointer of an animation; `None` for a property that cannot be animated here.
+/// Resolves a pointer of an animation; `None` for a property that cannot be animated.
 pub(super) fn resolve(source: &Source<'_>, animation: usize, pointer: &str, parts: &Parts<'_>) -> Option<Pointed> {
     let mut words = pointer.strip_prefix('/')?.splitn(3, '/');
     let (kind, index, rest) = (words.next()?, words.next()?, words.next()?);
@@ -66,7 +66,8 @@ pub(super) fn resolve(source: &Source<'_>, animation: usize, pointer: &str, part
             let target =
                 |property| (parts.material)(index).map(|id| Target::Material(id, property)).into_iter().collect();
             let factors = || source.json.get("materials").and_then(|all| all.get(index));
-            // Emission is one color here: factor times strength. A strength that is animated with the factor multiplies it.
+            // Emission is one color here, factor times strength. If both are animated, the strength multiplies the
+            // factor.
             let has = |property: &str| {
                 let animation = source.json.get("animations").and_then(|all| all.get(animation));
                 animation.into_iter().flat_map(pointers).any(|own| own == format!("/materials/{index}/{property}"))
@@ -117,13 +118,13 @@ pub(super) fn resolve(source: &Source<'_>, animation: usize, pointer: &str, part
     }
 }
 
-/// Places of `index` in a list.
+/// Returns the positions of `index` in a list.
 fn places_of(all: &[usize], index: usize) -> impl Iterator<Item = usize> {
     all.iter().enumerate().filter(move |(_, own)| **own == index).map(|(place, _)| place)
 }
 
 impl Scale {
-    /// Scales values one after another, each of `width` numbers.
+    /// Scales consecutive values of `width` numbers each.
     pub fn apply(self, values: Vec<f64>) -> Vec<f64> {
         match self {
             Self::None => values,

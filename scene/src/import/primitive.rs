@@ -1,4 +1,4 @@
-//! One glTF primitive into one mesh.
+//! Conversion of a glTF primitive to a mesh.
 
 use glam::{Vec2, Vec3, Vec4};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
@@ -16,7 +16,7 @@ use crate::geometry::{generate_tangents, make_flat, order_for_drawing, repair_no
 use crate::material::{AlphaMode, Material};
 use crate::mesh::{Mesh, Topology};
 
-/// What a mesh is made of: primitives with equal keys share one.
+/// Key of geometry: primitives with equal keys share a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct GeometryKey {
     position: Option<Values>,
@@ -24,22 +24,23 @@ pub(super) struct GeometryKey {
     tangent: Option<Values>,
     uv: [Option<Values>; 2],
     color: Option<Values>,
-    /// Buffer view of the compressed mesh that has the indices, if there is one.
+    /// Buffer view of the compressed mesh that contains the indices, if any.
     packed: Option<usize>,
     indices: Option<usize>,
-    /// The mode's number in OpenGL; `None` for an invalid one.
+    /// OpenGL number of the mode; `None` for an invalid one.
     mode: Option<u32>,
-    /// The texture coordinates that tangents are wanted for.
+    /// Set of texture coordinates for tangent generation.
     tangent_uv: Option<u32>,
-    /// Triangles stay in their order, which shows where they blend.
+    /// True if triangles keep their order, which is visible when blending.
     blends: bool,
-    /// What moves the vertices, if anything does.
+    /// Skin influences and morph targets, if any.
     moves: Option<MovesKey>,
 }
 
 impl GeometryKey {
-    /// The material says which texture coordinates tangents follow, if it asks for them, and whether the order of triangles shows.
-    /// A mesh that `node` moves, which has a skin or not, is the node's own. `number` is the primitive's in its mesh.
+    /// Creates the key. The material `surface` determines the texture coordinates for tangents, and whether triangle
+    /// order matters. A mesh that `node` deforms, `skinned` or not, is not shared. `number` is the primitive's in its
+    /// mesh.
     pub fn new(primitive: &Primitive, number: usize, surface: &Material, node: usize, skinned: bool) -> Self {
         let values = |semantic: Semantic| packed::values(primitive, &semantic);
         Self {
@@ -61,7 +62,7 @@ impl GeometryKey {
     }
 }
 
-/// Builds the mesh; `None` when the primitive draws nothing, which is warned of.
+/// Builds the mesh; `None`, with a warning, if the primitive draws nothing.
 pub(super) fn build(
     source: &Source<'_>,
     key: &GeometryKey,
@@ -103,14 +104,14 @@ pub(super) fn build(
             mesh.normals = stream(source, at, "NORMAL", index, count, Vec3::from_array)?;
             let repaired = repair_normals(&mut mesh);
             warnings.count(Repair::Normals, at, repaired);
-            // Tangents without normals are to be ignored (section 3.7.2.1).
+            // Tangents without normals must be ignored (section 3.7.2.1).
             if let Some(index) = key.tangent {
                 mesh.tangents = stream(source, at, "TANGENT", index, count, Vec4::from_array)?;
                 let repaired = repair_tangents(&mut mesh);
                 warnings.count(Repair::Tangents, at, repaired);
             }
         }
-        // Lines and points without normals are not lit (section 3.9.7).
+        // Lines and points without normals are unlit (section 3.9.7).
         None if !mesh.has_area() => {}
         None => {
             let dropped = make_flat(&mut mesh);
@@ -130,7 +131,7 @@ pub(super) fn build(
     Ok((!mesh.indices.is_empty()).then_some(mesh))
 }
 
-/// The list of primitives, every corner below `vertices`; `None` with a warning when there is none.
+/// Returns the index list, every index below `vertices`; `None`, with a warning, if it is empty.
 fn corners(
     source: &Source<'_>,
     key: &GeometryKey,
@@ -145,7 +146,7 @@ fn corners(
     let topology = topology(mode);
     let packed = key.packed.and_then(|view| source.meshes.get(&view));
     let (mode, corners) = match (packed, key.indices) {
-        // A compressed mesh has triangles, even if the mode is a strip.
+        // A compressed mesh contains triangles, even if the mode is a strip.
         (Some(mesh), index) => (Mode::Triangles, packed_corners(source, mesh, index, mode, at)?),
         (None, Some(index)) => (mode, integers(source, index, &format!("{at} indices"))?),
         (None, None) => {
@@ -157,7 +158,7 @@ fn corners(
         let reason = format!("index {place} names vertex {}, but there are {vertices}", corners[place]);
         return Err(source.malformed(at, reason));
     }
-    // A strip or fan has up to three corners a vertex.
+    // A strip or fan expands to up to three corners per vertex.
     source.charge(corners.len() as u64 * 12)?;
     warnings.count(Repair::Corners, at, left_over(mode, corners.len()));
     let list = list(mode, &corners);
@@ -172,7 +173,8 @@ fn corners(
     Ok(Some((topology, list)))
 }
 
-/// The corners of a compressed mesh, as many as the accessor of indices states, unless it counts those of a strip.
+/// Returns the indices of a compressed mesh. Their number must match the accessor, unless the accessor counts those of
+/// a strip.
 fn packed_corners(
     source: &Source<'_>,
     mesh: &PackedMesh,

@@ -1,4 +1,4 @@
-//! A parsed file with its bytes: what every part of the importer reads from.
+//! Parsed file with its bytes, the input of all parts of the importer.
 
 use std::borrow::Cow;
 use std::cell::{Cell, OnceCell, RefCell};
@@ -18,51 +18,51 @@ use crate::memory::{Memory, OverBudget};
 use crate::options::LoadOptions;
 use crate::texture::BlockFormats;
 
-/// The document, its buffers, and how much memory was taken for what was made of them so far.
+/// The document, its buffers, and the memory charged so far.
 pub(super) struct Source<'a> {
-    /// The file, for messages and for paths relative to it.
+    /// Path for messages and for relative paths.
     pub file: &'a Path,
     /// The JSON as the schema types have it. Indices in it are unchecked.
     pub root: &'a Root,
-    /// The JSON as it is, for extensions that the schema types leave out.
+    /// The document as JSON, for extensions that the schema types do not cover.
     pub json: &'a Value,
-    /// The document that both are parts of.
+    /// Document of `root` and `json`.
     pub document: &'a Document,
-    /// The bytes of each buffer, at least as long as the JSON says.
+    /// Bytes of each buffer, at least as long as the JSON states.
     pub buffers: Vec<Buffer<'a>>,
-    /// The bytes of each compressed buffer view, by its index, which replace those in its buffer.
+    /// Decoded bytes of each compressed buffer view, by index; they replace those in its buffer.
     pub views: BTreeMap<usize, Vec<u8>>,
-    /// The compressed meshes that the scene draws, by their buffer views.
+    /// Decoded meshes that the scene draws, by buffer view.
     pub meshes: BTreeMap<usize, PackedMesh>,
-    /// The budget of everything that is decoded.
+    /// Memory budget of all decoded data.
     pub memory: &'a Memory,
     allow_outside: bool,
-    /// Triangles stay in the order of the file.
+    /// True if triangles keep the order of the file.
     pub keep_order: bool,
-    /// Places of the material extensions that animations change, as messages name them: `material 3: KHR_materials_sheen`.
+    /// Material extensions that animations change, as messages name them: `material 3: KHR_materials_sheen`.
     animated: BTreeSet<String>,
-    /// Formats of blocks that the device samples.
+    /// Block formats that the device can sample.
     pub block_formats: BlockFormats,
-    /// For each image of the file the first that is the same.
+    /// For each image of the file, the first identical one.
     images: Vec<usize>,
-    /// What was taken for the scene, which stays.
+    /// Bytes charged for the scene.
     kept_bytes: Cell<u64>,
-    /// What was taken for encoded bytes, which go with this.
+    /// Bytes charged for encoded data, released with this object.
     file_bytes: Cell<u64>,
     files: RefCell<BTreeSet<PathBuf>>,
 }
 
-/// The bytes of a buffer.
+/// Bytes of a buffer.
 pub(super) enum Buffer<'a> {
     /// Bytes of the file, a data URI or another file.
     Bytes(Cow<'a, [u8]>),
     /// A buffer with neither a URI nor a binary chunk, which an extension or application may fill (section 3.6.1.1).
-    /// Zeros are made once it is read.
+    /// Zeros are allocated on first use.
     Absent(OnceCell<Vec<u8>>),
 }
 
 impl Buffer<'_> {
-    /// Returns whether zeros were read from an absent buffer.
+    /// Returns true if zeros were read from an absent buffer.
     pub fn is_read_and_absent(&self) -> bool {
         matches!(self, Self::Absent(zeros) if zeros.get().is_some())
     }
@@ -91,13 +91,13 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// An error at a place in this file.
+    /// Returns an error at a place in this file.
     pub fn malformed(&self, at: &str, reason: impl Into<String>) -> SceneError {
         SceneError::malformed(self.file, at, reason)
     }
 
-    /// An error of a file that a place in this one names. For a missing file, the error names a file whose letters differ in
-    /// case.
+    /// Returns the error of a file referenced by this one. If the file is missing, the error suggests a file whose name
+    /// differs in letter case.
     pub fn named(&self, at: &str, error: SceneError) -> SceneError {
         let error = match error {
             SceneError::Read { file, source } if source.kind() == ErrorKind::NotFound => {
@@ -117,67 +117,67 @@ impl<'a> Source<'a> {
         SceneError::Named { file: self.file.into(), at: at.into(), error: Box::new(error) }
     }
 
-    /// An error about something in this file that is over its limit.
+    /// Returns an error about an exceeded limit.
     pub fn too_large(&self, what: Quantity, value: u64, limit: u64) -> SceneError {
         SceneError::TooLarge { file: self.file.into(), what, value, limit }
     }
 
-    /// The first image of the file that has the bytes of this one: each is decoded once.
+    /// Returns the first identical image of the file; identical images are decoded once.
     pub fn same_image(&self, image: usize) -> usize {
         self.images[image]
     }
 
-    /// Returns whether an animation changes a property of the material extension at a place.
+    /// Returns true if an animation changes a property of the material extension at a place.
     pub fn is_animated(&self, at: &str) -> bool {
         self.animated.contains(at)
     }
 
-    /// What the URI of a place stands for.
+    /// Resolves the URI at a place.
     pub fn resolve(&self, at: &str, uri: &str) -> Result<Resource, SceneError> {
         resolve(self.file, at, uri, self.allow_outside)
     }
 
-    /// Notes a file that was read.
+    /// Records a file that was read.
     pub fn note_file(&self, file: &Path) {
         self.files.borrow_mut().insert(file.into());
     }
 
-    /// The files that were read, in order of their names.
+    /// Returns the files that were read, sorted by name.
     pub fn files(&self) -> Vec<PathBuf> {
         self.files.borrow().iter().cloned().collect()
     }
 
-    /// Takes memory for a part of the scene.
+    /// Charges memory for a part of the scene.
     pub fn keep(&self, bytes: u64) -> Result<(), OverBudget> {
         self.memory.keep(bytes)?;
         self.kept_bytes.set(self.kept_bytes.get() + bytes);
         Ok(())
     }
 
-    /// Takes memory for bytes that are decoded and then dropped.
+    /// Charges memory for bytes that are dropped after decoding.
     pub fn keep_file(&self, at: &str, bytes: u64) -> Result<(), SceneError> {
         self.memory.keep(bytes).map_err(|budget| self.over(at, budget))?;
         self.file_bytes.set(self.file_bytes.get() + bytes);
         Ok(())
     }
 
-    /// Takes memory for vertices about to be decoded. Accessors may claim any count without bytes behind them, and views
-    /// may overlap, so the file's size bounds nothing.
+    /// Charges memory for vertices before they are decoded. Accessors may state any count without bytes, and views may
+    /// overlap, so the file size is no bound.
     pub fn charge(&self, bytes: u64) -> Result<(), SceneError> {
         self.keep(bytes).map_err(|budget| self.over("vertices", budget))
     }
 
-    /// An error about something that does not fit into the budget.
+    /// Returns an error about an exceeded memory budget.
     pub fn over(&self, at: &str, budget: OverBudget) -> SceneError {
         SceneError::Memory { file: self.file.into(), at: at.into(), budget }
     }
 
-    /// The scene is whole: what was taken for it stays taken.
+    /// Marks the scene as complete: its memory stays charged.
     pub fn finish(&self) {
         self.kept_bytes.set(0);
     }
 
-    /// The bytes of a buffer view and its stride, if it states one.
+    /// Returns the bytes of a buffer view and its stride, if stated.
     pub fn view(&self, index: usize, at: &str) -> Result<(&[u8], Option<usize>), SceneError> {
         let views = &self.root.buffer_views;
         let view = views.get(index).ok_or_else(|| self.malformed(at, beyond("buffer view", index, views)))?;
@@ -190,7 +190,7 @@ impl<'a> Source<'a> {
         Ok((self.range(view.buffer.value(), start, view.byte_length.0, at, name)?, stride))
     }
 
-    /// A range of a buffer. `name` names the object that states the range.
+    /// Returns a range of a buffer. `name` is the object that states the range.
     pub fn range(
         &self,
         buffer: usize,
@@ -212,7 +212,7 @@ impl<'a> Source<'a> {
             }
         };
         slice(data, start, length).ok_or_else(|| {
-            // Every other buffer has the bytes that it promises.
+            // Every other buffer has all the bytes it states.
             let is_placeholder = (data.len() as u64) < self.root.buffers[buffer].byte_length.0;
             self.malformed(
                 at,
@@ -232,14 +232,14 @@ impl Drop for Source<'_> {
     }
 }
 
-/// For each image the first with the same bytes: the same buffer view, or the same URI but for `./`.
+/// Returns, for each image, the first with the same buffer view or the same URI; a leading `./` is ignored.
 fn first_of_each(images: &[gltf_json::Image]) -> Vec<usize> {
     let mut first: BTreeMap<(Option<usize>, PathBuf), usize> = BTreeMap::new();
     let number = |(index, image): (usize, &gltf_json::Image)| {
         let view = image.buffer_view.map(|view| view.value());
         let path = |uri: &String| Path::new(uri).components().filter(|part| *part != Component::CurDir).collect();
         match (view, image.uri.as_ref().map(path)) {
-            // Neither is an error once the image is used.
+            // An error only if the image is used.
             (None, None) => index,
             (view, path) => *first.entry((view, path.unwrap_or_default())).or_insert(index),
         }
@@ -247,23 +247,23 @@ fn first_of_each(images: &[gltf_json::Image]) -> Vec<usize> {
     images.iter().enumerate().map(number).collect()
 }
 
-/// `length` bytes from `start`, if the slice has them. Takes the file's 64-bit numbers as they are.
+/// Returns `length` bytes from `start`, if the slice contains them. Accepts untrusted 64-bit numbers.
 pub(super) fn slice(data: &[u8], start: u64, length: u64) -> Option<&[u8]> {
     let end = start.checked_add(length)?;
     data.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
 }
 
-/// The reason for an index that is too large.
+/// Returns the reason for an out-of-range index.
 pub(super) fn beyond<T>(what: &str, index: usize, all: &[T]) -> String {
     format!("names {what} {index}, but there are {}", all.len())
 }
 
-/// A fault of a file that the importer repairs. All of one kind are one warning.
+/// A repairable fault of a file. All faults of one kind make one warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Repair {
     /// Normals that are not finite or have no length.
     Normals,
-    /// Tangents that are not finite, have no length or lie along the normal.
+    /// Tangents that are not finite, have no length or are parallel to the normal.
     Tangents,
     /// Texture coordinates that are not finite.
     TexCoords,
@@ -271,9 +271,9 @@ pub(super) enum Repair {
     Colors,
     /// Skin weights that are negative, not finite or do not add up to 1.
     Weights,
-    /// Triangles without area in a mesh without normals.
+    /// Degenerate triangles in a mesh without normals.
     Triangles,
-    /// Corners at the end of a list that make no whole triangle or line.
+    /// Trailing indices that form no complete triangle or line.
     Corners,
     /// Absent buffers that are read.
     Absent,
@@ -282,7 +282,7 @@ pub(super) enum Repair {
 }
 
 impl Repair {
-    /// Says what was wrong with `count` elements, and what the importer does.
+    /// Describes the fault of `count` elements and its repair.
     fn sentence(self, count: usize) -> String {
         match self {
             Self::Normals => format!("{count} normals have no direction; they were recomputed from the triangles"),
@@ -300,7 +300,7 @@ impl Repair {
 
 /// Repairs of one kind.
 struct Repaired {
-    /// The first place, for messages.
+    /// First place, for messages.
     first: String,
     /// Number of places.
     places: usize,
@@ -308,7 +308,7 @@ struct Repaired {
     count: usize,
 }
 
-/// Warnings of one load, each once.
+/// Warnings of one load, without duplicates.
 pub(super) struct Warnings {
     file: String,
     lines: Vec<String>,
@@ -320,8 +320,7 @@ impl Warnings {
         Self { file: one_line(&file.display().to_string()), lines: Vec::new(), repairs: BTreeMap::new() }
     }
 
-    /// Adds `text` after the file's name, unless it was said before. After 100 only their number
-    /// would help, so no more are kept.
+    /// Adds `text` with the file's name unless it is a duplicate. Only the first 100 warnings are kept.
     pub fn push(&mut self, text: impl AsRef<str>) {
         const MOST: usize = 100;
         let line = format!("{}: {}", self.file, one_line(text.as_ref()));
@@ -335,7 +334,7 @@ impl Warnings {
         }
     }
 
-    /// Counts `count` repaired elements at a place; none are no warning.
+    /// Counts `count` repaired elements at a place; zero adds no warning.
     pub fn count(&mut self, repair: Repair, at: &str, count: usize) {
         if count == 0 {
             return;
@@ -346,7 +345,7 @@ impl Warnings {
         repaired.count += count;
     }
 
-    /// Returns all warnings: one for each kind of repair behind the others.
+    /// Returns all warnings, followed by one for each kind of repair.
     pub fn into_lines(mut self) -> Vec<String> {
         for (repair, Repaired { first, places, count }) in std::mem::take(&mut self.repairs) {
             let others = match places - 1 {

@@ -1,9 +1,9 @@
-//! KHR_materials_pbrSpecularGlossiness as metal-rough materials.
+//! Conversion of KHR_materials_pbrSpecularGlossiness to metallic-roughness materials.
 //!
-//! Filament shades such a material with the specular color as f0, the perceptual roughness 1 − glossiness, and the diffuse
-//! color times 1 − max(f0) (`shading_model_specularGlossiness`). KHR_materials_specular says the same with an index of
-//! refraction of 0: a dielectric of f0 1, tinted by the specular color. The roughness of a textured material becomes an
-//! image of its own, since glossiness is stored in alpha and inverted.
+//! Filament's `shading_model_specularGlossiness` uses the specular color as f0 and a perceptual roughness of 1 −
+//! glossiness. The diffuse color is multiplied by 1 − max(f0). The equivalent in KHR_materials_specular has an index of
+//! refraction of 0: a dielectric of f0 1, tinted by the specular color. Textured roughness becomes a new image, since
+//! glossiness is inverted and stored in alpha.
 
 use glam::{Vec3, Vec4};
 use gltf_json as json;
@@ -15,15 +15,15 @@ use crate::error::SceneError;
 use crate::material::{Material, Specular};
 use crate::texture::TextureRole;
 
-/// The extension's name.
+/// Name of the extension.
 const NAME: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// Returns whether the extension replaces the metal-rough parameters of a glTF material.
+/// Returns true if the extension replaces the metallic-roughness parameters of a glTF material.
 pub(super) fn replaces(json: &json::Material) -> bool {
     json.extensions.as_ref().is_some_and(|extensions| extensions.others.contains_key(NAME))
 }
 
-/// Replaces the metal-rough parameters of `material` where the glTF material `json`, named `at`, has the extension.
+/// Replaces the metallic-roughness parameters of `material` if the glTF material `json`, named `at`, has the extension.
 pub(super) fn read(
     source: &Source<'_>,
     at: &str,

@@ -1,11 +1,11 @@
-//! Streams of vertices out of accessors.
+//! Vertex streams from accessors.
 
 use super::accessor::floats;
 use super::packed::Values;
 use super::source::Source;
 use crate::error::SceneError;
 
-/// Reads a vertex attribute, of `count` elements if that is known.
+/// Reads a vertex attribute; `count` is the required number of elements, if known.
 pub(super) fn stream<const N: usize, T>(
     source: &Source<'_>,
     at: &str,
@@ -24,7 +24,7 @@ pub(super) fn stream<const N: usize, T>(
     Ok(values.into_iter().map(convert).collect())
 }
 
-/// Refuses a stream with an element that is not finite, naming the first.
+/// Rejects a stream with an element that is not finite; the error names the first one.
 pub(super) fn finite<T: std::fmt::Display>(
     source: &Source<'_>,
     at: &str,

@@ -1,6 +1,6 @@
-//! Switches of nodes, lights and materials that glTF has no members for: the object `framegraph` in their `extras`.
+//! Switches of nodes, lights and materials without glTF members: the object `framegraph` in their `extras`.
 //!
-//! Wrong values are warnings, and the defaults stay.
+//! Invalid values produce warnings and keep the defaults.
 
 use std::ops::RangeInclusive;
 
@@ -15,17 +15,17 @@ use crate::material::{
     AlphaMode, Material, Stencil, StencilCompare, StencilFace, StencilOp, Subsurface, TransparencyMode,
 };
 
-/// The switches of one object of the file.
+/// Switches of one object of the file.
 pub(super) struct Switches<'a> {
     members: Option<&'a Map<String, Value>>,
-    /// `node 3 "name": extras.framegraph`, for messages.
+    /// Place for messages: `node 3 "name": extras.framegraph`.
     at: String,
     warnings: &'a mut Warnings,
     read: Vec<&'static str>,
 }
 
 impl<'a> Switches<'a> {
-    /// Those in `extras` of the object that `pointer` leads to (RFC 6901), which is named `at`.
+    /// Returns the switches of the object at `pointer` (RFC 6901), named `at`.
     pub fn of(document: &'a Document, pointer: &str, at: &str, warnings: &'a mut Warnings) -> Self {
         Self::new(document.switches.get(pointer), format!("{at}: extras.{SWITCHES}"), warnings)
     }
@@ -41,7 +41,7 @@ impl<'a> Switches<'a> {
         self.warnings.count(Repair::Switches, &format!("{}.{member}", self.at), 1);
     }
 
-    /// A member, if it is stated and `parse` makes something of it.
+    /// Returns a member if present and accepted by `parse`.
     fn member<T>(&mut self, name: &'static str, parse: impl FnOnce(&Value) -> Option<T>) -> Option<T> {
         self.read.push(name);
         let parsed = parse(self.members?.get(name)?);
@@ -51,22 +51,22 @@ impl<'a> Switches<'a> {
         parsed
     }
 
-    /// A whole number in `range`.
+    /// Returns an integer in `range`.
     fn whole<T: TryFrom<u64> + PartialOrd>(&mut self, name: &'static str, range: RangeInclusive<T>) -> Option<T> {
         self.member(name, |value| T::try_from(value.as_u64()?).ok().filter(|number| range.contains(number)))
     }
 
-    /// `true` or `false`.
+    /// Returns a boolean.
     fn flag(&mut self, name: &'static str) -> Option<bool> {
         self.member(name, Value::as_bool)
     }
 
-    /// A number in `min…max`.
+    /// Returns a number in `min…max`.
     fn number(&mut self, name: &'static str, [min, max]: [f32; 2]) -> Option<f32> {
         self.member(name, |value| Some(value.as_f64()? as f32).filter(|number| (min..=max).contains(number)))
     }
 
-    /// A color of three channels in 0…1, linear Rec.709.
+    /// Returns a color of three channels in 0…1, linear Rec.709.
     fn color(&mut self, name: &'static str) -> Option<Vec3> {
         self.member(name, |value| {
             let [r, g, b] = value.as_array()?.as_slice() else { return None };
@@ -75,12 +75,12 @@ impl<'a> Switches<'a> {
         })
     }
 
-    /// One of some words.
+    /// Returns the value of one of these words.
     fn word<T: Copy>(&mut self, name: &'static str, words: &[(&str, T)]) -> Option<T> {
         self.member(name, |value| words.iter().find(|(word, _)| value.as_str() == Some(word)).map(|(_, own)| *own))
     }
 
-    /// The switches in a member, if it is stated.
+    /// Returns the switches in a member, if present.
     fn nested(&mut self, name: &'static str) -> Option<Switches<'_>> {
         self.read.push(name);
         let stated = self.members?.get(name)?;
@@ -88,14 +88,14 @@ impl<'a> Switches<'a> {
         nested.members.is_some().then_some(nested)
     }
 
-    /// Warns of members that were not read.
+    /// Warns about unknown members.
     fn finish(mut self) {
         let all = self.members.into_iter().flatten().map(|(name, _)| name.as_str());
         let unknown: Vec<&str> = all.filter(|name| !self.read.contains(name)).collect();
         unknown.into_iter().for_each(|name| self.wrong(name));
     }
 
-    /// Those of a node, for its instances.
+    /// Returns the draw options of a node's instances.
     pub fn draw_options(mut self) -> DrawOptions {
         let default = DrawOptions::default();
         let options = DrawOptions {
@@ -153,7 +153,7 @@ impl<'a> Switches<'a> {
         self.finish();
     }
 
-    /// The stencil state of a material, if it states any.
+    /// Returns the stencil state of a material, if present.
     fn stencil(&mut self) -> Option<Box<Stencil>> {
         self.nested("stencil").map(|mut stated| {
             let default = Stencil::default();
@@ -176,7 +176,7 @@ impl<'a> Switches<'a> {
         })
     }
 
-    /// Test and operations of a face; members that are not stated are those of `default`.
+    /// Returns test and operations of a face; missing members are those of `default`.
     fn stencil_face(&mut self, default: StencilFace) -> StencilFace {
         StencilFace {
             compare: self.word("compare", &StencilCompare::NAMES).unwrap_or(default.compare),

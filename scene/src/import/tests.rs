@@ -1,4 +1,4 @@
-//! The importer on files made in code: what is right comes out right, what is wrong is one line.
+//! The importer on generated files: valid files load correctly, and invalid files return one line.
 
 mod attached;
 mod cases;

@@ -13,38 +13,38 @@ use crate::error::SceneError;
 use crate::texture::{Filter, Image, Sampler, Texture, TextureRole, TextureSlot, UvTransform, Wrap};
 use crate::texture::{ImageId, SamplerId, TextureId};
 
-/// The three ways in which the schema writes a texture reference, as one.
+/// A texture reference, unified from the schema's three types.
 pub(super) struct Reference<'a> {
     /// Index of the texture in the file, unchecked.
     pub texture: usize,
     pub uv_set: u32,
-    /// KHR_texture_transform, if given.
+    /// KHR_texture_transform, if present.
     pub transform: Option<TransformSource<'a>>,
 }
 
-/// The transform parsed by the schema, or left as JSON where the schema does not know it.
+/// Transform parsed by the schema, or as JSON if the schema does not cover it.
 pub(super) enum TransformSource<'a> {
     Parsed(&'a TextureTransform),
     Json(&'a gltf_json::Value),
 }
 
-/// The textures of a scene as they are found, each once.
+/// Textures of a scene, collected on first use, each once.
 #[derive(Default)]
 pub(super) struct Textures {
-    /// Indices of images in the file, in the order of their ids.
+    /// File indices of images, in the order of their ids.
     pub images: Vec<usize>,
     pub samplers: Vec<Sampler>,
     pub textures: Vec<Texture>,
-    /// Images that are computed from others; their ids are settled by [`Textures::number_computed`].
+    /// Images computed from others; [`Textures::number_computed`] assigns their ids.
     pub computed: Vec<Roughness>,
-    /// For each texture the computed image that it shows, if any.
+    /// Computed image of each texture, if any.
     shows_computed: BTreeMap<TextureId, usize>,
 }
 
-/// An image of roughness that is computed from one of glossiness.
+/// A roughness image computed from a glossiness image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Roughness {
-    /// The image whose alpha is glossiness.
+    /// Image with glossiness in alpha.
     pub image: ImageId,
     /// Factor of the glossiness, 0 to 1.
     pub glossiness: f32,
@@ -68,7 +68,7 @@ impl Roughness {
 }
 
 impl Textures {
-    /// Returns the slot of the roughness that belongs to a slot of glossiness.
+    /// Returns the roughness slot for a glossiness slot.
     pub fn roughness_of_glossiness(&mut self, slot: TextureSlot, glossiness: f32) -> TextureSlot {
         let source = self.textures[slot.texture.index()];
         let computed = place_of(&mut self.computed, Roughness { image: source.image, glossiness });
@@ -85,14 +85,14 @@ impl Textures {
         TextureSlot { texture, ..slot }
     }
 
-    /// Gives computed images the ids behind those of the file, whose number is known now.
+    /// Assigns ids to computed images, after those of the file.
     pub fn number_computed(&mut self) {
         for (texture, computed) in &self.shows_computed {
             self.textures[texture.index()].image = ImageId::new(self.images.len() + computed);
         }
     }
 
-    /// Resolves a reference; `None` with a warning when it uses coordinates that are not imported.
+    /// Resolves a reference; `None`, with a warning, if it uses texture coordinates that are not imported.
     pub fn slot(
         &mut self,
         source: &Source<'_>,
@@ -123,7 +123,7 @@ impl Textures {
             role,
             sampler: SamplerId::new(place_of(&mut self.samplers, sampler)),
         };
-        // A texture of a computed image looks like one of the image it is made of, until it is numbered.
+        // Until ids are assigned, a texture of a computed image refers to its source image.
         let known = (0..self.textures.len()).find(|place| {
             self.textures[*place] == texture && !self.shows_computed.contains_key(&TextureId::new(*place))
         });
@@ -135,11 +135,10 @@ impl Textures {
     }
 }
 
-/// Extensions that give a texture another image than its `source`, the preferred one first.
+/// Extensions that replace the `source` image of a texture, in order of preference.
 const IMAGE_EXTENSIONS: [&str; 2] = ["KHR_texture_basisu", "EXT_texture_webp"];
 
-/// Returns the image of a texture: that of an extension which this build reads, or else its `source`; `None` for a texture
-/// without either.
+/// Returns the image of a texture: that of a supported extension, otherwise its `source`; `None` without either.
 fn image_of(
     source: &Source<'_>,
     at: &str,
@@ -150,7 +149,7 @@ fn image_of(
     let supported = IMAGE_EXTENSIONS.iter().filter(|name| is_supported(name));
     let image = match supported.filter_map(extension).find_map(|value| value.get("source")) {
         Some(image) => image.as_u64().map_or(usize::MAX, |image| image.try_into().unwrap_or(usize::MAX)),
-        // The schema writes this for a texture without a source.
+        // The schema's value for a texture without a source.
         None if json.source.value() == u32::MAX as usize => return Ok(None),
         None => json.source.value(),
     };
@@ -161,7 +160,7 @@ fn image_of(
     Ok(Some(image))
 }
 
-/// Where `value` is in `all`, appended if it is new.
+/// Returns the position of `value` in `all`, appending it if it is new.
 fn place_of<T: PartialEq>(all: &mut Vec<T>, value: T) -> usize {
     all.iter().position(|v| *v == value).unwrap_or_else(|| {
         all.push(value);
@@ -169,7 +168,7 @@ fn place_of<T: PartialEq>(all: &mut Vec<T>, value: T) -> usize {
     })
 }
 
-/// The transform, and the coordinate set it overrides.
+/// Returns the transform, and the texture coordinate set that it overrides.
 fn transform(
     source: &Source<'_>,
     at: &str,

@@ -1,10 +1,10 @@
-//! Primitive modes into lists of triangles, lines or points (glTF 2.0, section 3.7.2.1).
+//! Conversion of primitive modes to lists of triangles, lines or points (glTF 2.0, section 3.7.2.1).
 
 use gltf_json::mesh::Mode;
 
 use crate::mesh::Topology;
 
-/// Every mode, in the order of its number.
+/// All modes, in the order of their numbers.
 pub(super) const MODES: [Mode; 7] = [
     Mode::Points,
     Mode::Lines,
@@ -15,7 +15,7 @@ pub(super) const MODES: [Mode; 7] = [
     Mode::TriangleFan,
 ];
 
-/// Primitives that a mode draws once it is a list.
+/// Returns the topology of a mode after conversion to a list.
 pub(super) const fn topology(mode: Mode) -> Topology {
     match mode {
         Mode::Points => Topology::Points,
@@ -24,8 +24,8 @@ pub(super) const fn topology(mode: Mode) -> Topology {
     }
 }
 
-/// Turns `corners` of a mode into a list of its [`topology`]. Strips and fans repeat corners to jump; triangles and lines that
-/// use a vertex twice cover nothing and are left out, and so are the [`left_over`] corners.
+/// Converts indices of a mode to a list of its [`topology`]. Degenerate triangles and lines, which strips and fans use
+/// to restart, are removed, as are the [`left_over`] indices.
 pub(super) fn list(mode: Mode, corners: &[u32]) -> Vec<u32> {
     match topology(mode) {
         Topology::Points => corners.to_vec(),
@@ -34,7 +34,7 @@ pub(super) fn list(mode: Mode, corners: &[u32]) -> Vec<u32> {
     }
 }
 
-/// Returns the number of corners at the end of a list that make no whole triangle or line.
+/// Returns the number of trailing indices that form no complete triangle or line.
 pub(super) fn left_over(mode: Mode, corners: usize) -> usize {
     match mode {
         Mode::Triangles | Mode::Lines => corners % topology(mode).corners(),
@@ -47,7 +47,7 @@ fn lines(mode: Mode, corners: &[u32]) -> Vec<u32> {
         Mode::Lines => corners.chunks_exact(2).map(|line| [line[0], line[1]]).collect(),
         _ => {
             let strip = corners.windows(2).map(|line| [line[0], line[1]]);
-            // The last line of a loop leads back to its first corner.
+            // The last line of a loop returns to its first vertex.
             let back = match corners {
                 [first, .., last] if mode == Mode::LineLoop => Some([*last, *first]),
                 _ => None,
@@ -63,7 +63,7 @@ fn triangles(mode: Mode, corners: &[u32]) -> Vec<u32> {
         Mode::TriangleStrip => corners
             .windows(3)
             .enumerate()
-            // Every second triangle of a strip winds the other way round.
+            // Every second triangle of a strip has the opposite winding.
             .map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[0], t[2], t[1]] })
             .collect(),
         Mode::TriangleFan => match corners.split_first() {
@@ -85,7 +85,7 @@ mod tests {
         let of = |mode, corners: &[u32]| list(mode, corners);
         assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 3, 4]), [0, 1, 2, 1, 3, 2, 2, 3, 4]);
         assert_eq!(of(Mode::TriangleFan, &[9, 1, 2, 3]), [1, 2, 9, 2, 3, 9]);
-        // A strip that jumps by repeating corners.
+        // A strip that restarts with repeated indices.
         assert_eq!(of(Mode::TriangleStrip, &[0, 1, 2, 2, 5, 5, 6, 7]), [0, 1, 2, 5, 7, 6]);
         assert!(of(Mode::Triangles, &[4, 4, 5]).is_empty());
         for few in [&[][..], &[1], &[1, 2]] {
@@ -94,7 +94,7 @@ mod tests {
         }
     }
 
-    /// Section 3.7.2.1: a line of a strip joins neighbors, and a loop closes from its last vertex to its first.
+    /// Section 3.7.2.1: lines of a strip join neighbors, and a loop also joins its last vertex to its first.
     #[test]
     fn lines_join_neighbors_and_loops_close() {
         let of = |mode, corners: &[u32]| list(mode, corners);

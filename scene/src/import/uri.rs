@@ -1,24 +1,24 @@
-//! URIs of buffers and images: data URIs, and percent-encoded paths beside the file.
+//! URIs of buffers and images: data URIs, and percent-encoded paths relative to the file.
 
 use std::path::{Component, Path, PathBuf};
 
 use super::encoding::{decode_base64, decode_percent};
 use crate::error::{SceneError, Unsupported, one_line};
 
-/// What a URI stands for.
+/// Target of a URI.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Resource {
-    /// The bytes themselves.
+    /// Embedded bytes.
     Bytes(Vec<u8>),
-    /// A file to read.
+    /// Path of a file.
     File(PathBuf),
 }
 
 /// Resolves a URI of `file`, named `at` in messages.
 ///
-/// Data URIs may be base64 or percent-encoded (RFC 2397). Anything without a scheme is a path
-/// relative to `file`, percent-encoded or not. Other schemes are refused: nothing is fetched. A path that leads out of the
-/// folder of `file`, by itself or by a link, is refused unless `allow_outside`.
+/// Data URIs may be base64 or percent-encoded (RFC 2397). A URI without a scheme is a path relative to `file`,
+/// percent-encoded or not. Other schemes are rejected: nothing is fetched. A path that leaves the folder of `file`,
+/// also by a link, is rejected unless `allow_outside`.
 pub(super) fn resolve(file: &Path, at: &str, uri: &str, allow_outside: bool) -> Result<Resource, SceneError> {
     let malformed = |reason: String| SceneError::malformed(file, at, reason);
     if let Some(data) = uri.strip_prefix("data:") {
@@ -40,7 +40,7 @@ pub(super) fn resolve(file: &Path, at: &str, uri: &str, allow_outside: bool) -> 
         return Err(malformed(format!("the path {:?} names no file", one_line(uri))));
     }
     let folder = file.parent().unwrap_or_else(|| Path::new(""));
-    // A file whose name really holds a percent sign, written by an exporter that did not encode it.
+    // The file name may contain a literal percent sign, written by an exporter without encoding.
     let literal = folder.join(uri);
     let decoded = folder.join(path);
     let found = if !decoded.exists() && literal.exists() { literal } else { decoded };
@@ -51,7 +51,8 @@ pub(super) fn resolve(file: &Path, at: &str, uri: &str, allow_outside: bool) -> 
     }
 }
 
-/// Whether a path in `folder` stays there, behind all links. One that does not exist is judged by its words.
+/// Returns true if a path in `folder` stays there after all links are resolved. A path that does not exist is judged by
+/// its components.
 pub(super) fn is_inside(folder: &Path, path: &Path) -> bool {
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     if let (Ok(here), Ok(path)) = (here.canonicalize(), path.canonicalize()) {
@@ -70,7 +71,7 @@ pub(super) fn is_inside(folder: &Path, path: &Path) -> bool {
     })
 }
 
-/// The scheme of a URI (RFC 3986, section 3.1), if it has one.
+/// Returns the scheme of a URI (RFC 3986, section 3.1), if any.
 fn scheme(uri: &str) -> Option<&str> {
     let (scheme, _) = uri.split_once(':')?;
     let mut letters = scheme.chars();

@@ -1,4 +1,4 @@
-//! KHR_materials_variants: other materials for the primitives of a file, by the name of a variant.
+//! KHR_materials_variants: alternative materials of primitives, selected by variant name.
 
 use gltf_json::mesh::Primitive;
 use serde_json::Value;
@@ -6,19 +6,19 @@ use serde_json::Value;
 use super::source::Source;
 use crate::error::{SceneError, one_line};
 
-/// The extension's name.
+/// Name of the extension.
 const NAME: &str = "KHR_materials_variants";
 
-/// The variants of a file and the chosen one.
+/// Variants of a file and the selected one.
 pub(super) struct Variants {
-    /// Names in the order of the file.
+    /// Names in file order.
     pub names: Vec<String>,
-    /// Number of the chosen variant; `None` for the default materials.
+    /// Number of the selected variant; `None` for the default materials.
     chosen: Option<usize>,
 }
 
 impl Variants {
-    /// Reads the names of a file's variants and finds the one that the options ask for.
+    /// Reads the variants of a file and looks up the requested one.
     ///
     /// # Errors
     ///
@@ -37,7 +37,7 @@ impl Variants {
         Ok(Self { names, chosen })
     }
 
-    /// Returns the index of a primitive's material: that of the chosen variant, or else the default one.
+    /// Returns the material index of a primitive: that of the selected variant, otherwise the default.
     pub fn material(&self, source: &Source<'_>, at: &str, primitive: &Primitive) -> Result<Option<usize>, SceneError> {
         let default = primitive.material.map(|index| index.value());
         let Some(chosen) = self.chosen else {

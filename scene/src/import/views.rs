@@ -1,7 +1,7 @@
 //! Buffer views compressed with `EXT_meshopt_compression` or `KHR_meshopt_compression`.
 //!
-//! All of them are decoded before anything reads a view, each on some core. The decoded bytes replace the view's own, so
-//! accessors, sparse accessors, animations and images need not know. Uncompressed copies for other programs are not read.
+//! All compressed views are decoded in parallel before any view is read. The decoded bytes replace those of the view,
+//! transparently for accessors, animations and images. Uncompressed fallbacks are not read.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
@@ -15,24 +15,24 @@ use crate::meshopt::{Filter, Layout, MeshoptError, Mode, decode as decode_view};
 use crate::parallel::in_parallel;
 use crate::progress::{Progress, ProgressFn, Stage, report};
 
-/// The extension under its two names, the newer first.
+/// Both names of the extension, the newer first.
 const NAMES: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 
-/// A compressed view that is found but not decoded.
+/// A compressed view that is located but not decoded.
 struct Compressed<'a> {
     view: usize,
-    /// For messages: `buffer view 3: EXT_meshopt_compression`.
+    /// Place for messages: `buffer view 3: EXT_meshopt_compression`.
     at: String,
     layout: Layout,
     bytes: &'a [u8],
 }
 
-/// Decodes the compressed buffer views of the file, by their indices.
+/// Decodes the compressed buffer views of the file; the result is keyed by view index.
 ///
 /// # Errors
 ///
-/// Fails for an extension object that breaks the rules, for a stream that does not decode, and where memory is short.
-/// The first error in the order of the file is reported.
+/// Fails for an invalid extension object, for a stream that does not decode, and if memory is short. Reports the first
+/// error in file order.
 pub(super) fn decode(
     source: &Source<'_>,
     progress: &mut ProgressFn<'_>,
@@ -64,7 +64,7 @@ pub(super) fn decode(
         },
     );
     stopped?;
-    // After an error the views behind it may be missing, the ones before it never are.
+    // After an error, later views may be missing, but no earlier ones.
     let all = compressed.iter().zip(decoded).filter_map(|(view, result)| Some((view, result?)));
     all.map(|(view, result)| match result {
         Ok(bytes) => Ok((view.view, bytes)),
@@ -73,8 +73,8 @@ pub(super) fn decode(
     .collect()
 }
 
-/// Buffers that need not be read, since every view of them is compressed: those marked as fallback, and those without a URI
-/// that are not the binary chunk.
+/// Returns the buffers that need not be read, since every view of them is compressed. These are marked as fallback, or
+/// have no URI and are not the binary chunk.
 pub(super) fn fallbacks(root: &Root, has_blob: bool) -> BTreeSet<usize> {
     let is_marked = |buffer: &Buffer| {
         let others = buffer.extensions.as_ref().map(|extensions| &extensions.others);
@@ -91,13 +91,13 @@ pub(super) fn fallbacks(root: &Root, has_blob: bool) -> BTreeSet<usize> {
     buffers.filter(is_fallback).map(|(index, _)| index).collect()
 }
 
-/// The extension's object of a view, with the name that it has.
+/// Returns the extension object of a view, and the name under which it appears.
 fn of_view(view: &View) -> Option<(&'static str, &Value)> {
     let others = &view.extensions.as_ref()?.others;
     NAMES.into_iter().find_map(|name| Some((name, others.get(name)?)))
 }
 
-/// Reads and checks the extension's object of a view.
+/// Reads and checks the extension object of a view.
 fn find<'a>(source: &'a Source<'_>, view: usize, name: &str, json: &Value) -> Result<Compressed<'a>, SceneError> {
     let at = format!("buffer view {view}: {name}");
     let number = |key: &str| match json.get(key).map(Value::as_u64) {

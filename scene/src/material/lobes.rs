@@ -1,39 +1,38 @@
-//! The lobes that a surface may have beside the metal-rough base, in glTF's terms.
+//! Lobes that extend the metallic-roughness base of a material, in glTF's terms.
 //!
-//! A material holds a lobe only where it shows: importers leave out what a zero factor switches off, so the set of lobes
-//! in a scene is the set of effects that it calls for.
+//! A material has a lobe only if it is visible: importers omit lobes with a zero factor. The set of lobes in a scene is
+//! thus the set of effects that it needs.
 
 use glam::Vec3;
 
 use crate::texture::TextureSlot;
 
-/// A thin clear layer over the surface (KHR_materials_clearcoat), as varnish on wood or lacquer on a car: a second
-/// specular lobe over everything else.
+/// Clear coat (KHR_materials_clearcoat), such as varnish or car paint: a second specular lobe over all others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClearCoat {
-    /// How much of the surface is coated, 0…1.
+    /// Coverage of the coat, 0…1.
     pub factor: f32,
     /// Perceptual roughness of the coat, 0…1.
     pub roughness: f32,
-    /// Scales x and y of the coat's tangent-space normal.
+    /// Scale of the x and y components of the coat's tangent-space normal.
     pub normal_scale: f32,
     /// Texture of the factor (R); role `Linear`.
     pub texture: Option<TextureSlot>,
     /// Texture of the roughness (G); role `Linear`.
     pub roughness_texture: Option<TextureSlot>,
-    /// Texture of the coat's tangent-space normal; without it the coat has the mesh's normals. Role `Normal`.
+    /// Texture of the coat's tangent-space normals; without it the coat uses the normals of the mesh. Role `Normal`.
     pub normal_texture: Option<TextureSlot>,
-    /// Keeps the base's reflectance at normal incidence, as in air. By default, the base meets the coat's index of 1.5, which
-    /// lowers it. Filament: material property `clearCoatIorChange` set to false.
+    /// Keeps the base's reflectance at normal incidence as in air. By default the interface with the coat, of index
+    /// 1.5, reduces it. Filament: material property `clearCoatIorChange` set to false.
     pub keeps_base_f0: bool,
 }
 
-/// Fibers that stand up from the surface (KHR_materials_sheen): brightest at the silhouette.
+/// Sheen (KHR_materials_sheen): reflection by fibers, brightest at silhouettes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sheen {
     /// Reflectance of the fibers, linear Rec.709, 0…1.
     pub color: Vec3,
-    /// Perceptual roughness 0…1: how far the fibers spread.
+    /// Perceptual roughness 0…1; larger values spread the fibers.
     pub roughness: f32,
     /// Texture of the color (RGB); role `Color`.
     pub color_texture: Option<TextureSlot>,
@@ -41,81 +40,82 @@ pub struct Sheen {
     pub roughness_texture: Option<TextureSlot>,
 }
 
-/// Roughness that differs by direction (KHR_materials_anisotropy), as on brushed metal: highlights are stretched along a
-/// direction of the surface.
+/// Anisotropic roughness (KHR_materials_anisotropy), as on brushed metal: highlights are stretched along a direction of
+/// the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Anisotropy {
-    /// How far the roughness along the direction goes towards 1: 0 not at all, 1 all the way.
+    /// Increase of the roughness along the direction: 0 for none, 1 for a roughness of 1.
     pub strength: f32,
-    /// From the tangent to the direction, counter-clockwise in the tangent plane, in radians.
+    /// Angle from the tangent to the direction, counter-clockwise in the tangent plane, in radians.
     pub rotation_rad: f32,
     /// Texture of the direction (RG, decoded to −1…1) and the strength (B); role `Linear`.
     pub texture: Option<TextureSlot>,
 }
 
-/// Light that passes through the surface (KHR_materials_transmission) into what lies behind it.
+/// Transmission (KHR_materials_transmission): light that passes through the surface without scattering.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Transmission {
-    /// How much of the light that enters is transmitted and not scattered diffusely, 0…1.
+    /// Fraction of the entering light that is transmitted instead of scattered diffusely, 0…1.
     pub factor: f32,
     /// Texture of the factor (R); role `Linear`.
     pub texture: Option<TextureSlot>,
-    /// The body behind the surface; `None` is a thin wall, which does not refract.
+    /// Volume behind the surface; `None` for a thin wall, which does not refract.
     pub volume: Option<Volume>,
 }
 
-/// The inside of a transmitting body (KHR_materials_volume).
+/// Volume of a transmissive body (KHR_materials_volume).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Volume {
-    /// Depth of the body under the surface in units of the mesh, above 0.
+    /// Thickness of the volume beneath the surface in mesh units, above 0.
     pub thickness: f32,
     /// Texture of the thickness (G); role `Linear`.
     pub thickness_texture: Option<TextureSlot>,
-    /// What white light becomes over `attenuation_distance_m`, linear Rec.709, 0…1.
+    /// Color of white light after `attenuation_distance_m`, linear Rec.709, 0…1.
     pub attenuation_color: Vec3,
-    /// In meters of the world, above 0; infinity absorbs nothing.
+    /// Distance in meters of world space, above 0; infinity for no absorption.
     pub attenuation_distance_m: f32,
 }
 
-/// A thin film over the base (KHR_materials_iridescence), as on soap bubbles or oil: light reflected at its two sides
-/// interferes.
+/// Iridescence (KHR_materials_iridescence): interference of light reflected at both sides of a thin film, as on soap
+/// bubbles or oil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iridescence {
-    /// Share of the surface under the film, 0…1.
+    /// Coverage of the film, 0…1.
     pub factor: f32,
     /// Texture of the factor (R); role `Linear`.
     pub texture: Option<TextureSlot>,
     /// Index of refraction of the film, 1 or more.
     pub ior: f32,
-    /// Thickness of the film in nanometers where its texture is 0.
+    /// Thickness of the film in nanometers at a texture value of 0.
     pub min_thickness_nm: f32,
-    /// Thickness of the film in nanometers where its texture is 1, and without a texture.
+    /// Thickness of the film in nanometers at a texture value of 1, or without a texture.
     pub max_thickness_nm: f32,
     /// Texture of the thickness (G); role `Linear`.
     pub thickness_texture: Option<TextureSlot>,
 }
 
-/// Light that is scattered through the surface (KHR_materials_diffuse_transmission), as through leaves, paper or wax.
+/// Diffuse transmission (KHR_materials_diffuse_transmission): light scattered through the surface, as in leaves, paper
+/// or wax.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseTransmission {
-    /// Share of the scattered light that leaves on the other side, 0…1.
+    /// Fraction of the scattered light that exits on the other side, 0…1.
     pub factor: f32,
     /// Texture of the factor (A); role `Linear`.
     pub texture: Option<TextureSlot>,
-    /// Albedo of the light that leaves on the other side, linear Rec.709, 0…1.
+    /// Albedo of the light that exits on the other side, linear Rec.709, 0…1.
     pub color: Vec3,
     /// Texture of the color (RGB); role `Color`.
     pub color_texture: Option<TextureSlot>,
-    /// Body behind the surface, which absorbs light on its way; `None` is a thin sheet.
+    /// Volume behind the surface, which absorbs light; `None` for a thin sheet.
     pub volume: Option<Volume>,
 }
 
-/// Strength and tint of a dielectric's reflection (KHR_materials_specular); metals have their base color.
+/// Strength and tint of a dielectric's specular reflection (KHR_materials_specular). Metals use their base color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Specular {
-    /// Factor on the whole reflection, 0…1.
+    /// Factor on the entire reflection, 0…1.
     pub factor: f32,
-    /// Factor on reflectance at normal incidence, linear Rec.709, 0 or more; the product is held at 1.
+    /// Factor on the reflectance at normal incidence, linear Rec.709, 0 or more; the product is clamped to 1.
     pub color: Vec3,
     /// Texture of the factor (A); role `Linear`.
     pub texture: Option<TextureSlot>,
@@ -123,33 +123,33 @@ pub struct Specular {
     pub color_texture: Option<TextureSlot>,
 }
 
-/// Light scattered below the surface, as in skin, wax or leaves. It is Filament's shading model `subsurface`: an approximation
-/// in the style of films, which conserves no energy. In glTF files it is `{"subsurface": {...}}` of the material's extras.
+/// Subsurface scattering, as in skin, wax or leaves. It is Filament's shading model `subsurface`: an approximation that
+/// does not conserve energy. In glTF files it is `{"subsurface": {...}}` in the material's extras.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Subsurface {
     /// Color of the scattered light, linear Rec.709, 0…1. Filament: `subsurfaceColor`.
     pub color: Vec3,
-    /// Exponent of the lobe toward lights behind the surface, 0 to [`Subsurface::MAX_POWER`]; larger values make it smaller.
+    /// Exponent of the lobe toward lights behind the surface, 0 to [`Subsurface::MAX_POWER`]; larger values narrow it.
     /// Filament: `subsurfacePower`.
     pub power: f32,
-    /// Thickness, from 0 (light passes unhindered) to 1 (none passes); without a unit. Filament: `thickness`.
+    /// Thickness without a unit, from 0 (all light passes) to 1 (no light passes). Filament: `thickness`.
     pub thickness: f32,
 }
 
 impl Subsurface {
-    /// Largest exponent.
+    /// Maximum exponent.
     pub const MAX_POWER: f32 = 10_000.0;
 }
 
 impl Default for Subsurface {
-    /// Filament's defaults: white, power 12.234, thickness 0.5.
+    /// Returns Filament's defaults: white, power 12.234, thickness 0.5.
     fn default() -> Self {
         Self { color: Vec3::ONE, power: 12.234, thickness: 0.5 }
     }
 }
 
 impl Default for Iridescence {
-    /// The defaults of the extension, with the film everywhere: index 1.3, 100 to 400 nm.
+    /// Returns the extension's defaults with full coverage: index 1.3, 100 to 400 nm.
     fn default() -> Self {
         Self {
             factor: 1.0,
@@ -163,14 +163,14 @@ impl Default for Iridescence {
 }
 
 impl Default for DiffuseTransmission {
-    /// A thin white sheet that scatters all light through.
+    /// Returns a thin white sheet that transmits all scattered light.
     fn default() -> Self {
         Self { factor: 1.0, texture: None, color: Vec3::ONE, color_texture: None, volume: None }
     }
 }
 
 impl Default for Volume {
-    /// One unit of the mesh thick, without absorption.
+    /// Returns a volume one mesh unit thick, without absorption.
     fn default() -> Self {
         Self {
             thickness: 1.0,
@@ -182,46 +182,46 @@ impl Default for Volume {
 }
 
 impl Default for Specular {
-    /// Factor and color of 1, which change nothing.
+    /// Returns factor and color of 1, which have no effect.
     fn default() -> Self {
         Self { factor: 1.0, color: Vec3::ONE, texture: None, color_texture: None }
     }
 }
 
 impl Volume {
-    /// Absorption coefficient of each channel in 1/m (Beer and Lambert): −ln(color) / distance.
+    /// Returns the absorption coefficient of each channel in 1/m (Beer and Lambert): −ln(color) / distance.
     ///
-    /// A black channel counts as a millionth, so that the result is finite.
+    /// Channels are at least 1e-6, so that the result is finite.
     #[must_use]
     pub fn absorption_per_m(&self) -> Vec3 {
         let optical_depth = -self.attenuation_color.clamp(Vec3::splat(1e-6), Vec3::ONE).map(f32::ln);
-        // No distance is no information, not absorption without bounds.
+        // A distance of zero is missing information, not infinite absorption.
         optical_depth / self.attenuation_distance_m.max(1e-6)
     }
 }
 
-/// A lobe that a material may have beside the metal-rough base.
+/// Lobe that extends the metallic-roughness base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Lobe {
-    /// A clear layer over the surface: [`ClearCoat`].
+    /// Second specular layer: [`ClearCoat`].
     ClearCoat,
-    /// Light scattered back by fibers: [`Sheen`].
+    /// Reflection by fibers: [`Sheen`].
     Sheen,
     /// Highlights stretched along a direction: [`Anisotropy`].
     Anisotropy,
-    /// Light that passes through: [`Transmission`].
+    /// Specular transmission: [`Transmission`].
     Transmission,
     /// Strength and tint of the dielectric reflection: [`Specular`].
     Specular,
-    /// A thin film over the base: [`Iridescence`].
+    /// Thin-film interference: [`Iridescence`].
     Iridescence,
-    /// Refraction that differs by color ([`Material::dispersion`](super::Material::dispersion)).
+    /// Refraction that depends on wavelength ([`Material::dispersion`](super::Material::dispersion)).
     Dispersion,
-    /// Light that is scattered through: [`DiffuseTransmission`].
+    /// Light scattered through the surface: [`DiffuseTransmission`].
     DiffuseTransmission,
-    /// Light that is scattered below the surface: [`Subsurface`].
+    /// Light scattered below the surface: [`Subsurface`].
     Subsurface,
-    /// Light that is scattered in cloth ([`Material::cloth_subsurface`](super::Material::cloth_subsurface)).
+    /// Light scattered within cloth ([`Material::cloth_subsurface`](super::Material::cloth_subsurface)).
     ClothSubsurface,
 }
 
@@ -241,37 +241,37 @@ impl Lobe {
     ];
 }
 
-/// A set of lobes.
+/// Set of lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Lobes(u16);
 
 impl Lobes {
-    /// The metal-rough base alone.
+    /// Empty set: the metallic-roughness base alone.
     pub const NONE: Self = Self(0);
 
-    /// The set with `lobe` added.
+    /// Returns the set with `lobe` added.
     #[must_use]
     pub const fn with(self, lobe: Lobe) -> Self {
         Self(self.0 | 1 << lobe as u8)
     }
 
-    /// The members of either set.
+    /// Returns the union of both sets.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Whether there is no lobe beside the base.
+    /// Returns true if the set has no lobes.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Whether `lobe` is in the set.
+    /// Returns true if `lobe` is in the set.
     pub const fn contains(self, lobe: Lobe) -> bool {
         self.0 & 1 << lobe as u8 != 0
     }
 
-    /// The members, in declaration order.
+    /// Returns the lobes of the set in declaration order.
     pub fn iter(self) -> impl Iterator<Item = Lobe> {
         Lobe::ALL.into_iter().filter(move |lobe| self.contains(*lobe))
     }

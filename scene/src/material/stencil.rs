@@ -1,8 +1,8 @@
 //! Stencil state of materials.
 
-/// How a material tests and writes the stencil buffer. Filament's `MaterialInstance::setStencil…`.
+/// Stencil test and operations of a material. Filament's `MaterialInstance::setStencil…`.
 ///
-/// Reference and masks are those of both faces, since WebGPU has one of each.
+/// Reference and masks apply to both faces, since WebGPU has one of each.
 ///
 /// ```
 /// use framegraph_scene::material::{Material, Stencil, StencilCompare, StencilFace, StencilOp};
@@ -17,13 +17,14 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Stencil {
-    /// True if the operations of the faces change the buffer; else only the test counts. Filament's `setStencilWrite`.
+    /// True if the operations of the faces modify the buffer; otherwise only the test applies. Filament's
+    /// `setStencilWrite`.
     pub write: bool,
-    /// Value that the buffer is compared with and that [`StencilOp::Replace`] writes.
+    /// Reference value of the comparison and of [`StencilOp::Replace`].
     pub reference: u8,
-    /// Bits of reference and buffer that are compared.
+    /// Mask of the bits that are compared.
     pub read_mask: u8,
-    /// Bits of the buffer that are written.
+    /// Mask of the bits that are written.
     pub write_mask: u8,
     /// Test and operations of front faces.
     pub front: StencilFace,
@@ -32,21 +33,21 @@ pub struct Stencil {
 }
 
 impl Default for Stencil {
-    /// A test that always passes, and nothing written, as in Filament.
+    /// Returns a test that always passes, without writes, as in Filament.
     fn default() -> Self {
         Self::both(StencilFace::default())
     }
 }
 
 impl Stencil {
-    /// The same test and operations for both faces, reference 0, all bits, and nothing written.
+    /// Returns a state with the same test and operations for both faces, reference 0, full masks, and no writes.
     #[must_use]
     pub const fn both(face: StencilFace) -> Self {
         Self { write: false, reference: 0, read_mask: u8::MAX, write_mask: u8::MAX, front: face, back: face }
     }
 }
 
-/// Stencil test and operations of one side of surfaces.
+/// Stencil test and operations of front or back faces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct StencilFace {
     /// Comparison of the reference with the buffer. Filament's `setStencilCompareFunction`.
@@ -59,7 +60,7 @@ pub struct StencilFace {
     pub pass: StencilOp,
 }
 
-/// Comparison that passes if `reference OP value in the buffer` holds.
+/// Comparison function; passes if `reference OP buffer value` holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StencilCompare {
     /// Always passes.
@@ -82,7 +83,7 @@ pub enum StencilCompare {
 }
 
 impl StencilCompare {
-    /// Every comparison with its name in files, which is WebGPU's.
+    /// All comparisons with their names in files, which are WebGPU's.
     pub const NAMES: [(&'static str, Self); 8] = [
         ("always", Self::Always),
         ("never", Self::Never),
@@ -98,27 +99,27 @@ impl StencilCompare {
 /// Operation on the value in the stencil buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StencilOp {
-    /// Leaves it.
+    /// Keeps the value.
     #[default]
     Keep,
     /// Writes 0.
     Zero,
     /// Writes the reference.
     Replace,
-    /// Flips all bits.
+    /// Inverts all bits.
     Invert,
-    /// Adds 1, up to 255.
+    /// Increments, clamped to 255.
     IncrementClamp,
-    /// Subtracts 1, down to 0.
+    /// Decrements, clamped to 0.
     DecrementClamp,
-    /// Adds 1; 255 becomes 0.
+    /// Increments; 255 becomes 0.
     IncrementWrap,
-    /// Subtracts 1; 0 becomes 255.
+    /// Decrements; 0 becomes 255.
     DecrementWrap,
 }
 
 impl StencilOp {
-    /// Every operation with its name in files, which is WebGPU's.
+    /// All operations with their names in files, which are WebGPU's.
     pub const NAMES: [(&'static str, Self); 8] = [
         ("keep", Self::Keep),
         ("zero", Self::Zero),

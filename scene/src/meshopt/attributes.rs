@@ -1,16 +1,17 @@
-//! Elements as differences of their bytes (appendix A, mode 0), versions 0 and 1.
+//! Attributes as byte differences (appendix A, mode 0), versions 0 and 1.
 
 use super::error::MeshoptError;
 use super::groups::{self, GROUP, Widths};
 use super::input::Input;
 use super::layout::{Layout, MAX_BLOCK_ELEMENTS};
 
-/// Widths of version 0.
+/// Bit widths of version 0.
 const WIDTHS_0: Widths = [0, 2, 4, 8];
-/// Widths of version 1, by the control mode of a byte position.
+/// Bit widths of version 1, by the control mode of a byte position.
 const WIDTHS_1: [Widths; 2] = [[0, 1, 2, 4], [1, 2, 4, 8]];
 
-/// Decodes elements block by block. Each block holds its bytes apart: all differences of the first byte, then of the second.
+/// Decodes elements block by block. A block stores the differences of each byte position separately: first those of
+/// byte 0, then of byte 1.
 pub(super) fn decode(layout: &Layout, bytes: &[u8]) -> Result<Vec<u8>, MeshoptError> {
     let (count, stride) = (layout.count, layout.stride);
     let version_1 = match bytes[0] {
@@ -61,19 +62,19 @@ pub(super) fn decode(layout: &Layout, bytes: &[u8]) -> Result<Vec<u8>, MeshoptEr
     Ok(decoded)
 }
 
-/// Meaning of the differences of four consecutive bytes.
+/// Interpretation of the differences of four consecutive bytes.
 #[derive(Clone, Copy)]
 enum Channel {
     /// Zigzag differences of bytes.
     Bytes,
     /// Zigzag differences of 16-bit numbers.
     Halves,
-    /// 32-bit numbers to combine by exclusive or. Each is rotated to the right by this number of bits before.
+    /// 32-bit differences, combined by exclusive or after rotation to the right by this number of bits.
     Xor(u32),
 }
 
 impl Channel {
-    /// The mode byte of a channel; version 0 has none and always states differences of bytes.
+    /// Parses the mode byte of a channel; version 0 has none and always uses byte differences.
     fn new(channel: usize, mode: Option<&u8>) -> Result<Self, MeshoptError> {
         match mode.copied().unwrap_or(0) {
             0 => Ok(Self::Bytes),
@@ -83,7 +84,7 @@ impl Channel {
         }
     }
 
-    /// Adds differences to the four bytes of the element before.
+    /// Adds differences to the four bytes of the previous element.
     fn add(self, previous: [u8; 4], difference: [u8; 4]) -> [u8; 4] {
         match self {
             Self::Bytes => std::array::from_fn(|i| {

@@ -1,6 +1,6 @@
 //! Errors of the decoder.
 
-/// Reason why a compressed buffer view does not decode. The messages name no file and no view.
+/// Error of decoding a compressed buffer view. The messages name neither file nor view.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum MeshoptError {
     /// The stride is not allowed in this mode or with this filter.
@@ -10,7 +10,7 @@ pub(crate) enum MeshoptError {
         stride: usize,
         /// Mode or filter.
         user: &'static str,
-        /// Strides that are allowed.
+        /// Allowed strides.
         allowed: &'static str,
     },
     /// The number of elements is not allowed in this mode.
@@ -18,7 +18,7 @@ pub(crate) enum MeshoptError {
     Count {
         /// Number of elements.
         count: usize,
-        /// Counts that are allowed.
+        /// Allowed counts.
         allowed: &'static str,
     },
     /// A filter is combined with a mode other than `ATTRIBUTES`.
@@ -37,30 +37,30 @@ pub(crate) enum MeshoptError {
     Header {
         /// First byte of the stream.
         found: u8,
-        /// Bytes that are allowed.
+        /// Allowed bytes.
         expected: &'static str,
     },
     /// The stream ends before all elements are decoded.
     #[error("truncated: the data ends within element {element}")]
     Truncated {
-        /// First element that is incomplete.
+        /// First incomplete element.
         element: usize,
     },
     /// Bytes are left after the last element.
     #[error("{bytes} bytes are left after the last element")]
     Trailing {
-        /// Number of bytes that are left.
+        /// Number of remaining bytes.
         bytes: usize,
     },
-    /// The mode byte of a channel is not defined.
+    /// The mode byte of a channel is undefined.
     #[error("the mode of channel {channel} is {mode:#04x}, which is not defined")]
     ChannelMode {
-        /// Number of the channel: four bytes of each element.
+        /// Number of the channel; a channel is four bytes of each element.
         channel: usize,
         /// Mode byte.
         mode: u8,
     },
-    /// The table of triangle codes breaks its rules.
+    /// The table of triangle codes is invalid.
     #[error("byte {place} of its table of codes is {byte:#04x}, which is not allowed")]
     Table {
         /// Position in the table.
@@ -68,7 +68,7 @@ pub(crate) enum MeshoptError {
         /// Byte at this position.
         byte: u8,
     },
-    /// A triangle refers to a vertex or an edge that was not decoded yet.
+    /// A triangle refers to a vertex or an edge that is not decoded yet.
     #[error("triangle {triangle} refers to an edge or a vertex before the first")]
     BeforeFirst {
         /// Number of the triangle.

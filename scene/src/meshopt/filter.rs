@@ -25,12 +25,12 @@ pub(super) fn apply(layout: &Layout, elements: &mut [u8]) {
     }
 }
 
-/// Replaces each element of four bytes.
+/// Maps each element of four bytes.
 fn each_8(elements: &mut [u8], filter: impl Fn([u8; 4]) -> [u8; 4]) {
     elements.as_chunks_mut::<4>().0.iter_mut().for_each(|element| *element = filter(*element));
 }
 
-/// Replaces each element of four 16-bit numbers.
+/// Maps each element of four 16-bit numbers.
 fn each_16(elements: &mut [u8], filter: impl Fn([i16; 4]) -> [i16; 4]) {
     for element in elements.as_chunks_mut::<8>().0 {
         let numbers = std::array::from_fn(|i| i16::from_le_bytes([element[2 * i], element[2 * i + 1]]));
@@ -40,8 +40,8 @@ fn each_16(elements: &mut [u8], filter: impl Fn([i16; 4]) -> [i16; 4]) {
     }
 }
 
-/// Decodes a unit vector; the third component states 1.0, the fourth is kept. Conversions of the result to integers
-/// saturate, so that elements which the extension forbids give some vector.
+/// Decodes a unit vector; the third component encodes 1.0, the fourth is kept. Conversions to integers saturate, so
+/// that invalid elements decode to some vector.
 fn octahedral([x, y, one, kept]: [i32; 4], max: f32) -> [f32; 4] {
     let (x, y) = (x as f32 / one as f32, y as f32 / one as f32);
     let z = 1.0 - x.abs() - y.abs();
@@ -52,7 +52,8 @@ fn octahedral([x, y, one, kept]: [i32; 4], max: f32) -> [f32; 4] {
     [(x * scale).round(), (y * scale).round(), (z * scale).round(), kept as f32]
 }
 
-/// Decodes a unit quaternion; the last number states 1.0 and, in its two lowest bits, the component that is left out.
+/// Decodes a unit quaternion. The last number encodes 1.0 and, in its two lowest bits, the index of the omitted
+/// component.
 fn quaternion([x, y, z, one]: [i16; 4]) -> [i16; 4] {
     let scale = FRAC_1_SQRT_2 / f32::from(one | 3);
     let [x, y, z] = [x, y, z].map(|c| f32::from(c) * scale);
@@ -68,12 +69,12 @@ fn quaternion([x, y, z, one]: [i16; 4]) -> [i16; 4] {
 fn exponential(bytes: [u8; 4]) -> [u8; 4] {
     let number = i32::from_le_bytes(bytes);
     let (exponent, mantissa) = (number >> 24, number << 8 >> 8);
-    // The bits of a power of two. Exponents are from −100 to 100; others wrap without meaning.
+    // Bits of a power of two. Valid exponents are −100 to 100; others wrap.
     let power = f32::from_bits((exponent.wrapping_add(127) as u32) << 23);
     (power * mantissa as f32).to_le_bytes()
 }
 
-/// Decodes a color from luma, two chroma components, and alpha, whose highest bit states the number of bits.
+/// Decodes a color from luma, two chroma components, and alpha, whose highest bit encodes the bit depth.
 fn color(y: u16, co: i32, cg: i32, alpha: u16, max: f32) -> [f32; 4] {
     let bits = u16::BITS - alpha.leading_zeros();
     let largest = (1i32 << bits) - 1;

@@ -1,15 +1,15 @@
-//! Differences of one byte of consecutive elements, in groups of 16 (appendix A, mode 0, data blocks).
+//! Differences of one byte position in consecutive elements, in groups of 16 (appendix A, mode 0, data blocks).
 
 use super::error::MeshoptError;
 use super::input::Input;
 
-/// Elements of a group.
+/// Number of elements of a group.
 pub(super) const GROUP: usize = 16;
 
-/// Bits of a difference, by the two bits that the header states for a group.
+/// Bits per difference, by the two header bits of a group.
 pub(super) type Widths = [u8; 4];
 
-/// Reads the differences of a data block. `differences` has a multiple of 16 places, at most 256.
+/// Reads the differences of a data block. The length of `differences` is a multiple of 16, at most 256.
 pub(super) fn read(input: &mut Input<'_>, widths: Widths, differences: &mut [u8]) -> Result<(), MeshoptError> {
     let header = input.take((differences.len() / GROUP).div_ceil(4))?;
     for (group, differences) in differences.chunks_exact_mut(GROUP).enumerate() {
@@ -25,8 +25,8 @@ pub(super) fn read(input: &mut Input<'_>, widths: Widths, differences: &mut [u8]
     Ok(())
 }
 
-/// Reads 16 differences of `width` bits. One with all bits set stands for a byte behind them. `shift` moves a difference,
-/// by its place in a byte, to the lowest bits.
+/// Reads 16 differences of `width` bits. A difference with all bits set refers to a full byte that follows. `shift`
+/// maps the position of a difference in its byte to a right shift.
 fn packed(
     input: &mut Input<'_>,
     differences: &mut [u8],

@@ -1,14 +1,14 @@
-//! Indices in any order (appendix A, mode 2).
+//! Arbitrary index sequences (appendix A, mode 2).
 
 use super::error::MeshoptError;
 use super::input::{Input, unzigzag};
 use super::layout::Layout;
 
 const HEADER: u8 = 0xd1;
-/// Bytes at the end that hold nothing.
+/// Unused bytes at the end.
 const TAIL_BYTES: usize = 4;
 
-/// Decodes indices, each a difference to the last index of one of two sequences.
+/// Decodes indices, each as the difference from the last index of one of two sequences.
 pub(super) fn decode(layout: &Layout, bytes: &[u8]) -> Result<Vec<u8>, MeshoptError> {
     if bytes[0] != HEADER {
         return Err(MeshoptError::Header { found: bytes[0], expected: "0xd1" });
@@ -27,7 +27,7 @@ pub(super) fn decode(layout: &Layout, bytes: &[u8]) -> Result<Vec<u8>, MeshoptEr
     Ok(decoded)
 }
 
-/// Appends an index of two or four bytes; the upper half of a longer one is dropped.
+/// Appends an index of two or four bytes; a two-byte index drops the upper half.
 pub(super) fn push(decoded: &mut Vec<u8>, index: u32, stride: usize) {
     decoded.extend_from_slice(&index.to_le_bytes()[..stride]);
 }

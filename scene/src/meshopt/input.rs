@@ -1,11 +1,11 @@
-//! Bytes and numbers from the front of a stream.
+//! Reader of bytes and numbers at the front of a stream.
 
 use super::error::MeshoptError;
 
-/// Rest of a stream.
+/// Remaining bytes of a stream.
 pub(super) struct Input<'a> {
     rest: &'a [u8],
-    /// Element that is being decoded, for errors.
+    /// Number of the current element, for errors.
     pub element: usize,
 }
 
@@ -14,7 +14,7 @@ impl<'a> Input<'a> {
         Self { rest: bytes, element: 0 }
     }
 
-    /// Takes `count` bytes.
+    /// Consumes `count` bytes.
     pub fn take(&mut self, count: usize) -> Result<&'a [u8], MeshoptError> {
         let (taken, rest) = self.rest.split_at_checked(count).ok_or(self.truncated())?;
         self.rest = rest;
@@ -27,7 +27,7 @@ impl<'a> Input<'a> {
         Ok(*byte)
     }
 
-    /// Takes an unsigned number in LEB128: seven bits a byte, lowest first, one to five bytes. Bits above 32 are ignored.
+    /// Reads an unsigned LEB128 number of one to five bytes. Bits above 32 are ignored.
     pub fn number(&mut self) -> Result<u32, MeshoptError> {
         let mut number = 0;
         for shift in (0..35).step_by(7) {
@@ -40,7 +40,7 @@ impl<'a> Input<'a> {
         Err(MeshoptError::LongNumber { element: self.element })
     }
 
-    /// Fails if bytes are left.
+    /// Fails if bytes remain.
     pub fn finish(&self) -> Result<(), MeshoptError> {
         if self.rest.is_empty() { Ok(()) } else { Err(MeshoptError::Trailing { bytes: self.rest.len() }) }
     }

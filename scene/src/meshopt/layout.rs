@@ -1,22 +1,22 @@
-//! The layout of a compressed buffer view, and the rules of the extension for it.
+//! Layout of a compressed buffer view, and the extension's rules for it.
 
 use super::error::MeshoptError;
 
 /// Bitstream of a compressed buffer view (`mode` in the extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
-    /// Elements of any kind, as differences of their bytes.
+    /// Attributes of any type, as byte differences.
     Attributes,
     /// Indices of a triangle list.
     Triangles,
-    /// Indices in any order.
+    /// Arbitrary index sequence.
     Indices,
 }
 
 /// Transformation of decoded attributes (`filter` in the extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Filter {
-    /// Attributes stay as they are.
+    /// No transformation.
     None,
     /// Unit vectors in octahedral encoding.
     Octahedral,
@@ -31,7 +31,7 @@ pub(crate) enum Filter {
 /// Layout of the decoded elements of a buffer view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Layout {
-    /// Number of elements; of indices in the modes of indices.
+    /// Number of elements, or of indices.
     pub count: usize,
     /// Bytes of an element.
     pub stride: usize,
@@ -41,11 +41,12 @@ pub(crate) struct Layout {
     pub filter: Filter,
 }
 
-/// Most elements of a block of attributes.
+/// Maximum number of elements in a block of attributes.
 pub(super) const MAX_BLOCK_ELEMENTS: usize = 256;
 
 impl Layout {
-    /// Checks the rules of the extension for count, stride, mode and filter, and the length of the stream against them.
+    /// Checks count, stride, mode and filter against the rules of the extension, and the length of the stream against
+    /// the layout.
     pub fn check(&self, stream_bytes: usize) -> Result<(), MeshoptError> {
         self.check_rules()?;
         let needed = self.min_stream_bytes();
@@ -77,23 +78,24 @@ impl Layout {
             _ if mode != Mode::Attributes => Err(MeshoptError::FilterOfIndices),
             Filter::Octahedral => stride_of("the filter OCTAHEDRAL", matches!(stride, 4 | 8), "4 or 8"),
             Filter::Quaternion => stride_of("the filter QUATERNION", stride == 8, "8"),
-            // Every stride of attributes is a multiple of four.
+            // Every attribute stride is a multiple of four.
             Filter::Exponential => Ok(()),
             Filter::Color => stride_of("the filter COLOR", matches!(stride, 4 | 8), "4 or 8"),
         }
     }
 
-    /// Number of decoded bytes. The layout must be valid.
+    /// Returns the number of decoded bytes. The layout must be valid.
     pub fn bytes(&self) -> u64 {
         self.count as u64 * self.stride as u64
     }
 
-    /// Elements of a full block of attributes: as many as 8 KiB hold, a multiple of 16, at most 256.
+    /// Returns the number of elements in a full block of attributes: as many as 8 KiB hold, a multiple of 16, at most
+    /// 256.
     pub fn block_elements(&self) -> usize {
         ((8192 / self.stride) & !15).min(MAX_BLOCK_ELEMENTS)
     }
 
-    /// Length of the shortest stream of this layout in bytes. The layout must be valid.
+    /// Returns the length of the shortest stream of this layout in bytes. The layout must be valid.
     fn min_stream_bytes(&self) -> u64 {
         let count = self.count as u64;
         match self.mode {

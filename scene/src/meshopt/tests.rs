@@ -1,4 +1,4 @@
-//! Streams of the meshoptimizer library, decoded as that library decodes them; damaged streams; layouts that are invalid.
+//! Streams of the meshoptimizer library, compared with its decoder; damaged streams; invalid layouts.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -13,7 +13,7 @@ struct Stream {
     decoded: Vec<u8>,
 }
 
-/// The streams of `tests/assets/compressed`.
+/// Streams of `tests/assets/compressed`.
 fn streams() -> Vec<Stream> {
     let text = include_str!("../../../tests/assets/compressed/streams.json");
     let all: Vec<Value> = serde_json::from_str(text).expect("JSON");
@@ -39,7 +39,7 @@ fn streams() -> Vec<Stream> {
     all.iter().map(stream).collect()
 }
 
-/// The components of filtered elements as numbers: the extension allows filters to differ by one step.
+/// Returns the components of filtered elements; the extension allows filters to differ by one step.
 fn numbers(layout: &Layout, bytes: &[u8]) -> Vec<i32> {
     let unsigned = layout.filter == Filter::Color;
     match layout.stride {
@@ -69,7 +69,7 @@ fn streams_decode_as_in_the_reference() {
     }
 }
 
-/// Version 1 has three modes of channels and four of bytes; the streams use all of them.
+/// Version 1 has three channel modes and four byte modes; the streams use all of them.
 #[test]
 fn streams_cover_the_modes_of_version_1() {
     let (mut channels, mut controls) = ([false; 3], [false; 4]);
@@ -97,7 +97,7 @@ fn a_stream_cut_anywhere_is_an_error() {
 fn flipped_bits_never_panic() {
     let (mut sound, mut broken) = (0, 0);
     for Stream { layout, bytes, .. } in &streams() {
-        // Every byte of short streams, and of long ones as many.
+        // Every byte of short streams, and as many of long ones.
         for place in (0..bytes.len()).step_by(bytes.len() / 200 + 1) {
             let mut damaged = bytes.clone();
             damaged[place] ^= 1 << (place % 8);
@@ -110,7 +110,7 @@ fn flipped_bits_never_panic() {
             }
         }
     }
-    // Values change without a trace, lengths do not.
+    // Changed values may go unnoticed, changed lengths do not.
     assert!(sound > 300 && broken > 300, "{sound} sound, {broken} broken");
 }
 
@@ -139,7 +139,7 @@ fn layouts_keep_the_rules_of_the_extension() {
     assert!(stride(Mode::Attributes, Filter::Quaternion, 4).is_err());
     assert!(matches!(check(Mode::Triangles, Filter::None, 4, 2), Err(MeshoptError::Count { .. })));
     assert!(matches!(check(Mode::Indices, Filter::None, 0, 2), Err(MeshoptError::Count { .. })));
-    // A count that no stream could hold is refused before anything is allocated.
+    // A count that no stream can contain fails before anything is allocated.
     for (mode, count) in
         [(Mode::Attributes, usize::MAX), (Mode::Triangles, usize::MAX / 3 * 3), (Mode::Indices, usize::MAX)]
     {
@@ -148,7 +148,7 @@ fn layouts_keep_the_rules_of_the_extension() {
     }
 }
 
-/// Streams written by hand, after the rules of appendix A.
+/// Streams written by hand according to appendix A.
 #[test]
 fn streams_that_break_a_rule_name_it() {
     let triangles = |codes: &[u8], data: &[u8], table: [u8; 16]| {
@@ -156,9 +156,9 @@ fn streams_that_break_a_rule_name_it() {
         decode(&layout, &[&[0xe1], codes, data, &table].concat())
     };
     assert_eq!(triangles(&[0xf0], &[], [0; 16]), Ok(vec![0, 0, 1, 0, 2, 0]));
-    // The second triangle shares the edge that was pushed last, from 0 to 2, and takes the next vertex.
+    // The second triangle shares the last pushed edge, from 0 to 2, and uses the next vertex.
     assert_eq!(triangles(&[0xf0, 0x00], &[], [0; 16]).map(|bytes| bytes[6..].to_vec()), Ok(vec![0, 0, 2, 0, 3, 0]));
-    // The byte 0 begins with vertex 0 again.
+    // The byte 0 restarts at vertex 0.
     assert_eq!(triangles(&[0xf0, 0xfe], &[0], [0; 16]).map(|bytes| bytes[6..].to_vec()), Ok(vec![0, 0, 1, 0, 2, 0]));
     assert_eq!(triangles(&[0x00], &[], [0; 16]), Err(MeshoptError::BeforeFirst { triangle: 0 }));
     assert_eq!(triangles(&[0xf0, 0x05], &[], [0; 16]), Err(MeshoptError::BeforeFirst { triangle: 1 }));

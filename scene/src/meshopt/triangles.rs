@@ -6,10 +6,10 @@ use super::input::{Input, unzigzag};
 use super::layout::Layout;
 
 const HEADER: u8 = 0xe1;
-/// Length of the table of codes at the end.
+/// Length of the code table at the end.
 const TABLE_BYTES: usize = 16;
 
-/// Decodes triangles from one code byte each, and from the data behind the codes where a code asks for it.
+/// Decodes triangles from one code byte each, with additional data after the codes where a code requires it.
 pub(super) fn decode(layout: &Layout, bytes: &[u8]) -> Result<Vec<u8>, MeshoptError> {
     if bytes[0] != HEADER {
         return Err(MeshoptError::Header { found: bytes[0], expected: "0xe1" });
@@ -29,7 +29,7 @@ pub(super) fn decode(layout: &Layout, bytes: &[u8]) -> Result<Vec<u8>, MeshoptEr
     Ok(decoded)
 }
 
-/// The last two bytes must be zero, and no half of a byte may be 15.
+/// Checks that the last two bytes are zero and that no half of a byte is 15.
 fn check_table(table: &[u8]) -> Result<(), MeshoptError> {
     let wrong = |(place, byte): &(usize, &u8)| {
         let unused = *place >= TABLE_BYTES - 2 && **byte != 0;
@@ -44,9 +44,9 @@ fn check_table(table: &[u8]) -> Result<(), MeshoptError> {
 /// State between triangles.
 struct Decoder<'a> {
     input: Input<'a>,
-    /// The vertex after the highest so far.
+    /// Next new vertex, after the highest so far.
     next: u32,
-    /// The last vertex that was stated as a difference.
+    /// Last vertex that was encoded as a difference.
     last: u32,
     edges: Fifo<[u32; 2]>,
     vertices: Fifo<u32>,
@@ -60,7 +60,7 @@ impl Decoder<'_> {
             return self.beside_edge(high, low);
         }
         match low {
-            // The table has no half of 15, hence reads no data.
+            // No half of a table byte is 15, so no data is read.
             0..14 => self.free(0, table[usize::from(low)]),
             _ => {
                 let halves = self.input.byte()?;
@@ -72,7 +72,7 @@ impl Decoder<'_> {
         }
     }
 
-    /// A triangle of a recent edge and a third vertex.
+    /// Decodes a triangle of a recent edge and a third vertex.
     fn beside_edge(&mut self, edge: u8, third: u8) -> Result<Option<[u32; 3]>, MeshoptError> {
         let Some([a, b]) = self.edges.get(edge) else {
             return Ok(None);
@@ -95,7 +95,7 @@ impl Decoder<'_> {
         Ok(Some([a, b, c]))
     }
 
-    /// A triangle without a recent edge: `first` and the halves of `others` each name a vertex.
+    /// Decodes a triangle without a recent edge: `first` and the halves of `others` each select a vertex.
     fn free(&mut self, first: u8, others: u8) -> Result<Option<[u32; 3]>, MeshoptError> {
         let names = [first, others >> 4, others & 15];
         let mut corners = [0; 3];
@@ -138,10 +138,10 @@ impl Decoder<'_> {
     }
 }
 
-/// The last 16 values that were pushed.
+/// Last 16 pushed values.
 struct Fifo<T> {
     values: [T; 16],
-    /// Number of values that were pushed.
+    /// Number of pushed values.
     pushed: usize,
 }
 
@@ -155,7 +155,7 @@ impl<T: Copy + Default> Fifo<T> {
         self.pushed += 1;
     }
 
-    /// Returns a value by its age: 0 is the last that was pushed, 15 the oldest.
+    /// Returns a value by its age: 0 is the last one, 15 the oldest.
     fn get(&self, age: u8) -> Option<T> {
         let place = self.pushed.checked_sub(1 + usize::from(age))?;
         Some(self.values[place % 16])

@@ -1,49 +1,49 @@
-//! Meshes whose vertices follow joints and morph targets.
+//! Deformable meshes: vertices follow joints and morph targets.
 
 use crate::mesh::{Mesh, MeshId};
 use crate::moves::{MorphTarget, Moves};
 use glam::{DMat3, DMat4, DVec3, Vec3, Vec4};
 
-/// Joints that vertices follow.
+/// Skin: joints that deform vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skin {
-    /// Nodes.
+    /// Node of each joint.
     pub joints: Vec<usize>,
-    /// For each joint, from the mesh's axes to the joint's, when the mesh is as it was modelled.
+    /// Inverse bind matrix of each joint: from the mesh's axes to the joint's in the bind pose.
     pub joint_from_mesh: Vec<DMat4>,
 }
 
-/// A mesh whose vertices move. One instance draws it.
+/// Deformable mesh, drawn by a single instance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// What is drawn; its vertices are those of the last pose.
+    /// Drawn mesh; its vertices are those of the last pose.
     pub mesh: MeshId,
-    /// The instance that draws it, by its number.
+    /// Number of the instance that draws it.
     pub instance: usize,
-    /// The node that it hangs on, whose weights its targets have.
+    /// Node to which it is attached, and whose weights its morph targets use.
     pub node: usize,
-    /// What its vertices follow.
+    /// Index of its skin, if any.
     pub skin: Option<usize>,
-    /// The vertices as they were modelled: positions, normals, and tangents if it has any.
+    /// Undeformed vertices: positions, normals, and tangents if it has any.
     pub rest: Shape,
-    /// What moves them.
+    /// Skin influences and morph targets.
     pub moves: Moves,
 }
 
-/// Streams that move.
+/// Deformable vertex streams.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shape {
-    /// In meters.
+    /// Positions in meters.
     pub positions: Vec<Vec3>,
-    /// Of unit length.
+    /// Unit normals; may be empty for lines and points.
     pub normals: Vec<Vec3>,
-    /// Of unit length; w is the side of the bitangent. May be empty.
+    /// Unit tangents; w is the sign of the bitangent. May be empty.
     pub tangents: Vec<Vec4>,
 }
 
 impl Body {
-    /// Moves the vertices of `mesh`: morph targets by `weights` first, then each vertex with its joints, whose matrices are
-    /// given from the mesh as it was modelled to the axes that it is drawn in.
+    /// Deforms the vertices of `mesh`: first with morph targets by `weights`, then with joints. Each matrix in `joints`
+    /// maps the undeformed mesh to the axes in which it is drawn.
     pub(super) fn deform(&self, weights: &[f64], joints: &[DMat4], mesh: &mut Mesh) {
         for vertex in 0..self.rest.positions.len() {
             let sum = |rest: DVec3, of: fn(&MorphTarget) -> &Vec<Vec3>| {
@@ -56,7 +56,7 @@ impl Body {
                 rest + moved.sum::<DVec3>()
             };
             let mut position = sum(self.rest.positions[vertex].as_dvec3(), |target| &target.positions);
-            // Lines and points may have no normals.
+            // Lines and points may lack normals.
             let rest_normal = self.rest.normals.get(vertex).copied();
             let mut normal = sum(rest_normal.unwrap_or_default().as_dvec3(), |target| &target.normals);
             let side = self.rest.tangents.get(vertex).map(|tangent| tangent.w);
@@ -73,7 +73,7 @@ impl Body {
                 tangent = linear * tangent;
             }
             mesh.positions[vertex] = position.as_vec3();
-            // What collapses keeps the direction that it had.
+            // A collapsed vector keeps its undeformed direction.
             if let Some(rest) = rest_normal {
                 mesh.normals[vertex] = normal.try_normalize().map_or(rest, DVec3::as_vec3);
             }
@@ -85,8 +85,8 @@ impl Body {
     }
 }
 
-/// What turns normals where `linear` moves positions; the inverse's transpose times the determinant, which a singular matrix has
-/// too.
+/// Returns the matrix that transforms normals if `linear` transforms positions: the inverse transpose times the
+/// determinant, which exists for singular matrices too.
 fn cofactor(linear: DMat3) -> DMat3 {
     let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
     DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))

@@ -1,4 +1,4 @@
-//! A scene at a moment of an animation.
+//! Posing a scene at an animation time.
 
 use std::collections::BTreeMap;
 
@@ -10,36 +10,36 @@ use crate::light::{Light, LightKind};
 use crate::scene::Scene;
 use glam::{DMat4, DVec3};
 
-/// A moment cannot be drawn.
+/// Error of posing a scene.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PoseError {
-    /// The scene has no such animation.
+    /// The scene has no animation with this number.
     #[error("animation {animation}: there are {count}; choose one of them")]
     NoAnimation {
-        /// Its number.
+        /// Requested number.
         animation: usize,
-        /// How many there are.
+        /// Number of animations.
         count: usize,
     },
-    /// Numbers grow beyond what can be computed with.
-    #[error("{animation}: at {time_s} s {what} is not finite; choose another time, or mend the file")]
+    /// A computed value is infinite or NaN.
+    #[error("{animation}: at {time_s} s {what} is not finite; choose another time, or repair the file")]
     NotFinite {
-        /// The animation.
+        /// Name of the animation.
         animation: String,
-        /// The time in seconds.
+        /// Time in seconds.
         time_s: f64,
-        /// What grows so.
+        /// Object with the value.
         what: String,
     },
     /// An instance is moved beyond [`MAX_COORDINATE_M`].
     #[error(
-        "{animation}: at {time_s} s instance {instance:?} is more than {MAX_COORDINATE_M:e} m from the origin; choose another time, or mend the file"
+        "{animation}: at {time_s} s instance {instance:?} is more than {MAX_COORDINATE_M:e} m from the origin; choose another time, or repair the file"
     )]
     TooFar {
-        /// The animation.
+        /// Name of the animation.
         animation: String,
-        /// The time in seconds.
+        /// Time in seconds.
         time_s: f64,
         /// Name of the instance.
         instance: String,
@@ -47,14 +47,15 @@ pub enum PoseError {
 }
 
 impl std::fmt::Debug for PoseError {
-    /// The sentence, since that is what an `unwrap` shows.
+    /// Prints the message, which `unwrap` shows.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
     }
 }
 
 impl Motion {
-    /// Transforms to world axes and weights of all nodes at a time of an animation, by its number; without one, as they rest.
+    /// Returns the world transforms and weights of all nodes at a time of an animation, by its number, or at rest
+    /// without one.
     #[must_use]
     pub fn nodes_at(&self, animation: Option<usize>, time_s: f64) -> (Vec<DMat4>, Vec<Vec<f64>>) {
         let mut own: Vec<Transform> = self.nodes.iter().map(|node| node.rest).collect();
@@ -65,7 +66,7 @@ impl Motion {
             if property == NodeProperty::Weights {
                 weights[node] = channel.curve.at(time_s);
             }
-            // A node with a matrix is not to be moved (section 3.11); such channels do nothing.
+            // A node with a matrix must not be animated (section 3.11); such channels are ignored.
             let Transform::Parts { translation, rotation, scale } = &mut own[node] else { continue };
             match property {
                 NodeProperty::Translation => *translation = DVec3::from_slice(&channel.curve.at(time_s)),
@@ -84,12 +85,12 @@ impl Motion {
 }
 
 impl Scene {
-    /// Poses the scene at a time, in seconds, of one of its animations, or at rest without one: instances, vertices of
-    /// bodies, lights, cameras, and the materials that animations change. Before its first and after its last key, an
-    /// animation stands still.
+    /// Poses the scene at a time, in seconds, of one of its animations, or at rest without one. This updates instances,
+    /// vertices of bodies, lights, cameras and animated materials. Times before the first and after the last keyframe
+    /// are clamped.
     ///
     /// # Errors
-    /// When there is no such animation, or something is moved beyond all bounds; the scene is as it was then, or partly moved.
+    /// Fails if the animation does not exist, or if an object is moved too far; the scene may then be partly posed.
     pub fn pose(&mut self, animation: Option<usize>, time_s: f64) -> Result<(), PoseError> {
         let count = self.motion.animations.len();
         if let Some(animation) = animation.filter(|number| *number >= count) {
@@ -108,11 +109,11 @@ impl Scene {
             let mesh = &mut self.meshes[body.mesh.index()];
             let mut joints = Vec::new();
             if let Some(skin) = body.skin.map(|skin| &self.motion.skins[skin]) {
-                // Joints alone say where a body is (section 3.7.3.3). Its vertices are kept near the first, so that in f32
-                // they are fine far from the origin, too.
+                // Only joints position a body (section 3.7.3.3). Its vertices are relative to the first joint, which
+                // preserves f32 precision far from the origin.
                 let first = world[skin.joints[0]];
                 let home = first.w_axis.truncate();
-                // Joints that mirror the mesh mirror the instance, which turns the winding of its triangles (section 3.7.4).
+                // Mirroring joints mirror the instance, which flips the winding of its triangles (section 3.7.4).
                 let is_mirrored = (first * skin.joint_from_mesh[0]).determinant() < 0.0;
                 let side = DMat4::from_scale(DVec3::new(if is_mirrored { -1.0 } else { 1.0 }, 1.0, 1.0));
                 let near = side * DMat4::from_translation(-home);
@@ -138,7 +139,7 @@ impl Scene {
         }
     }
 
-    /// Poses lights, cameras and materials, with nodes at `world`.
+    /// Poses lights, cameras and materials, with world transforms `world` of the nodes.
     fn pose_attached(&mut self, animation: Option<usize>, time_s: f64, world: &[DMat4]) {
         let Self { motion, lights, cameras, materials, .. } = self;
         let mut attached: BTreeMap<usize, &mut Light> = BTreeMap::new();
@@ -168,7 +169,8 @@ impl Scene {
                 property.write(&mut materials[material.index()], &channel.curve.at(time_s));
             }
         }
-        // Twice: cone angles and planes are held in the range that another property leaves them, which may come later.
+        // Applied twice: cone angles and clip planes are clamped by a related property, which may change later in the
+        // list.
         for channel in channels.iter().chain(channels) {
             let value = || channel.curve.at(time_s);
             match channel.target {

@@ -1,4 +1,4 @@
-//! Properties that animations change: of nodes, and by KHR_animation_pointer of materials, lights and cameras.
+//! Animated properties: of nodes, and with KHR_animation_pointer of materials, lights and cameras.
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -7,16 +7,16 @@ use crate::light::{Light, LightKind};
 use crate::material::{AlphaMode, Material, MaterialId};
 use crate::texture::TextureSlot;
 
-/// Property that a channel changes.
+/// Target property of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// A property of a node, by the node's place in [`Motion::nodes`](super::Motion::nodes).
+    /// A property of a node, by index into [`Motion::nodes`](super::Motion::nodes).
     Node(usize, NodeProperty),
     /// A property of a material.
     Material(MaterialId, MaterialProperty),
-    /// A property of a light, by its place in [`Rest::lights`](super::Rest::lights).
+    /// A property of a light, by index into [`Rest::lights`](super::Rest::lights).
     Light(usize, LightProperty),
-    /// A property of a camera, by its place in [`Scene::cameras`](crate::Scene::cameras).
+    /// A property of a camera, by index into [`Scene::cameras`](crate::Scene::cameras).
     Camera(usize, CameraProperty),
 }
 
@@ -25,11 +25,11 @@ pub enum Target {
 pub enum NodeProperty {
     /// Translation in meters, 3 numbers.
     Translation,
-    /// Rotation as a unit quaternion x, y, z, w.
+    /// Rotation as a unit quaternion x, y, z, w; 4 numbers.
     Rotation,
-    /// Scale by axis, 3 numbers.
+    /// Scale per axis, 3 numbers.
     Scale,
-    /// Weights of the mesh's morph targets, one number each.
+    /// Morph target weights of the mesh, one number each.
     Weights,
 }
 
@@ -38,13 +38,13 @@ pub enum NodeProperty {
 pub enum LightProperty {
     /// Linear Rec.709 color, 3 numbers.
     Color,
-    /// Lux of a directional light, candela of others.
+    /// Intensity: lux for a directional light, candela for others.
     Intensity,
-    /// Range in meters, of a point or spot light.
+    /// Range in meters, for a point or spot light.
     Range,
-    /// Angle from a spot light's axis to where it begins to fade, in radians.
+    /// Angle from a spot light's axis at which it begins to fade, in radians.
     InnerCone,
-    /// Angle from a spot light's axis to where it ends, in radians.
+    /// Angle from a spot light's axis at which it ends, in radians.
     OuterCone,
 }
 
@@ -53,26 +53,26 @@ pub enum LightProperty {
 pub enum CameraProperty {
     /// Vertical field of view in radians.
     FovY,
-    /// Half of an orthographic view's width in meters.
+    /// Half the width of an orthographic view in meters.
     HalfWidth,
-    /// Half of an orthographic view's height in meters.
+    /// Half the height of an orthographic view in meters.
     HalfHeight,
-    /// Distance of the near plane in meters.
+    /// Near-plane distance in meters.
     Near,
-    /// Distance of the far plane in meters.
+    /// Far-plane distance in meters.
     Far,
 }
 
-/// A property of a material: a factor, or a part of a texture's transform.
+/// A property of a material: a factor, or a component of a texture transform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialProperty {
-    /// A factor, by its place in the table of factors.
+    /// A factor, by index into the table of factors.
     Factor(usize),
-    /// A part of the transform of a texture, by the texture's place in the table of textures.
+    /// A component of a texture transform, by index into the table of textures.
     Transform(usize, TransformPart),
 }
 
-/// A part of a texture's transform (KHR_texture_transform).
+/// Component of a texture transform (KHR_texture_transform).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TransformPart {
     /// Translation, 2 numbers.
@@ -85,11 +85,11 @@ pub enum TransformPart {
 
 /// A factor of a material.
 struct Factor {
-    /// JSON pointer below the material.
+    /// JSON pointer relative to the material.
     pointer: &'static str,
-    /// Numbers of a value.
+    /// Numbers per value.
     width: usize,
-    /// Writes a value; nothing where the material lacks the lobe.
+    /// Writes a value; does nothing if the material lacks the lobe.
     write: fn(&mut Material, &[f32]),
 }
 
@@ -97,22 +97,22 @@ const fn factor(pointer: &'static str, width: usize, write: fn(&mut Material, &[
     Factor { pointer, width, write }
 }
 
-/// A number as f32, held in the range of finite ones: cubics may overshoot it.
+/// Converts a number to f32, clamped to finite values, which cubic interpolation may exceed.
 fn finite(number: f64) -> f32 {
     number.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }
 
-/// A value held in 0…1, as shading expects it.
+/// Clamps a value to 0…1, the range of shading.
 fn unit(value: &[f32]) -> f32 {
     value[0].clamp(0.0, 1.0)
 }
 
-/// A color held in 0…1.
+/// Clamps a color to 0…1.
 fn unit_color(value: &[f32]) -> Vec3 {
     Vec3::from_slice(value).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
-/// Factors that a pointer may name (glTF 2.0 Asset Object Model).
+/// Factors that a pointer may target (glTF 2.0 Asset Object Model).
 const FACTORS: &[Factor] = &[
     factor("pbrMetallicRoughness/baseColorFactor", 4, |m, v| {
         m.base_color = Vec4::from_slice(v).clamp(Vec4::ZERO, Vec4::ONE);
@@ -200,7 +200,7 @@ pub(crate) const EMISSIVE: &str = "emissiveFactor";
 /// Pointer of the strength of emission (KHR_materials_emissive_strength).
 pub(crate) const STRENGTH: &str = "extensions/KHR_materials_emissive_strength/emissiveStrength";
 
-/// The volume of a material, which both kinds of transmission have.
+/// Returns the volumes of a material, which both kinds of transmission have.
 fn volume(material: &mut Material) -> impl Iterator<Item = &mut crate::material::Volume> {
     let diffuse = material.diffuse_transmission.iter_mut().filter_map(|lobe| lobe.volume.as_mut());
     material.transmission.iter_mut().filter_map(|lobe| lobe.volume.as_mut()).chain(diffuse)
@@ -208,9 +208,9 @@ fn volume(material: &mut Material) -> impl Iterator<Item = &mut crate::material:
 
 /// A texture of a material.
 struct TextureAt {
-    /// JSON pointer below the material.
+    /// JSON pointer relative to the material.
     pointer: &'static str,
-    /// Finds the slot.
+    /// Returns the slot.
     slot: fn(&mut Material) -> Option<&mut TextureSlot>,
 }
 
@@ -218,7 +218,7 @@ const fn texture(pointer: &'static str, slot: fn(&mut Material) -> Option<&mut T
     TextureAt { pointer, slot }
 }
 
-/// Textures whose transform a pointer may name.
+/// Textures whose transform a pointer may target.
 const TEXTURES: &[TextureAt] = &[
     texture("pbrMetallicRoughness/baseColorTexture", |m| m.base_color_texture.as_mut()),
     texture("pbrMetallicRoughness/metallicRoughnessTexture", |m| m.metallic_roughness_texture.as_mut()),
@@ -257,7 +257,7 @@ const TEXTURES: &[TextureAt] = &[
 ];
 
 impl MaterialProperty {
-    /// Returns the property that a JSON pointer below a material names.
+    /// Returns the property for a JSON pointer relative to a material.
     #[must_use]
     pub fn at(pointer: &str) -> Option<Self> {
         if let Some(place) = FACTORS.iter().position(|factor| factor.pointer == pointer) {
@@ -274,12 +274,13 @@ impl MaterialProperty {
         Some(Self::Transform(place, part))
     }
 
-    /// Returns whether the property changes what another property of the material wrote, and comes behind it.
+    /// Returns true if the property modifies a value written by another property of the material, and must be applied
+    /// after it.
     pub(crate) fn is_relative(self) -> bool {
         matches!(self, Self::Factor(place) if FACTORS[place].pointer == STRENGTH)
     }
 
-    /// Returns the numbers of a value.
+    /// Returns the number of components of a value.
     #[must_use]
     pub fn width(self) -> usize {
         match self {
@@ -289,8 +290,8 @@ impl MaterialProperty {
         }
     }
 
-    /// Writes a value of [`width`](Self::width) numbers, held in the property's range. A material without the lobe or
-    /// texture stays as it is.
+    /// Writes a value of [`width`](Self::width) numbers, clamped to the property's range. Does nothing if the material
+    /// lacks the lobe or texture.
     pub(super) fn write(self, material: &mut Material, value: &[f64]) {
         let value: Vec<f32> = value.iter().map(|number| finite(*number)).collect();
         match self {
@@ -316,13 +317,13 @@ impl TransformPart {
 }
 
 impl LightProperty {
-    /// Returns the numbers of a value.
+    /// Returns the number of components of a value.
     #[must_use]
     pub fn width(self) -> usize {
         if self == Self::Color { 3 } else { 1 }
     }
 
-    /// Writes a value, held in the property's range. A light of a kind without the property stays as it is.
+    /// Writes a value, clamped to the property's range. Does nothing for a kind of light without the property.
     pub(super) fn write(self, light: &mut Light, value: &[f64]) {
         let first = finite(value[0]);
         match (self, &mut light.kind) {
@@ -349,8 +350,8 @@ impl LightProperty {
 }
 
 impl CameraProperty {
-    /// Writes a value. A camera of another projection stays as it is. So does one whose field of view would leave 0 to π, or
-    /// whose near plane would not be before its far plane.
+    /// Writes a value. Cameras with another projection are unchanged. Values are ignored if the field of view would
+    /// leave 0 to π, or if the near plane would not be before the far plane.
     pub(super) fn write(self, camera: &mut Camera, value: &[f64]) {
         let value = value[0];
         match (self, &mut camera.projection) {

@@ -1,50 +1,50 @@
-//! Values over time.
+//! Animation curves.
 
 use glam::DQuat;
 
-/// How values between two keys are found.
+/// Interpolation between two keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
-    /// The earlier key's.
+    /// Value of the earlier keyframe.
     Step,
-    /// In proportion; of rotations along the shorter arc.
+    /// Linear; spherical along the shorter arc for rotations.
     Linear,
-    /// By a cubic of both keys' values and tangents.
+    /// Cubic Hermite spline of values and tangents.
     Cubic,
 }
 
-/// Keys over time. Before the first it has the first one's value, after the last the last one's.
+/// Keyframes over time. Times outside of the keyframes are clamped to the first or last value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Times of the keys in seconds, at least one, rising.
+    /// Times of the keyframes in seconds, ascending, at least one.
     pub times_s: Vec<f64>,
-    /// Numbers a value, at least one.
+    /// Numbers per value, at least one.
     pub width: usize,
-    /// The keys' values one after another; of a cubic three for each key: tangent before, value, tangent after.
+    /// Values of the keyframes. A cubic has three per keyframe: in-tangent, value, out-tangent.
     pub values: Vec<f64>,
-    /// How values between keys are found.
+    /// Interpolation between keyframes.
     pub interpolation: Interpolation,
 }
 
 impl Curve {
-    /// When the last key is, in seconds.
+    /// Returns the time of the last keyframe, in seconds.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.times_s.last().copied().unwrap_or(0.0)
     }
 
-    /// How many values a key has.
+    /// Returns the number of values per keyframe.
     pub(crate) const fn parts(interpolation: Interpolation) -> usize {
         if matches!(interpolation, Interpolation::Cubic) { 3 } else { 1 }
     }
 
-    /// The value, or a tangent, of a key.
+    /// Returns the value or a tangent of a keyframe.
     fn key(&self, key: usize, part: usize) -> &[f64] {
         let first = (key * Self::parts(self.interpolation) + part) * self.width;
         &self.values[first..first + self.width]
     }
 
-    /// The two keys about a time, and what share of the way from the first to the second it is, 0 to 1.
+    /// Returns the two keyframes around a time, and the position between them from 0 to 1.
     fn place(&self, time_s: f64) -> (usize, usize, f64) {
         let after = self.times_s.partition_point(|key_s| *key_s <= time_s);
         let (first, second) = (after.saturating_sub(1), after.min(self.times_s.len() - 1));
@@ -52,7 +52,7 @@ impl Curve {
         (first, second, if way_s > 0.0 { ((time_s - self.times_s[first]) / way_s).clamp(0.0, 1.0) } else { 0.0 })
     }
 
-    /// The value at a time in seconds.
+    /// Returns the value at a time in seconds.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Vec<f64> {
         let (first, second, share) = self.place(time_s);
@@ -78,7 +78,7 @@ impl Curve {
         }
     }
 
-    /// The rotation at a time, of values that are quaternions, and of unit length.
+    /// Returns the rotation at a time in seconds as a unit quaternion; values must be quaternions.
     #[must_use]
     pub fn rotation_at(&self, time_s: f64) -> DQuat {
         let turned = |numbers: &[f64]| DQuat::from_slice(numbers);
@@ -113,7 +113,8 @@ mod tests {
         assert_eq!([one.at(0.0), one.at(7.0)], [[5.0, 6.0], [5.0, 6.0]]);
     }
 
-    /// Hermite's form: tangents are per second, so a line's cubic is that line, over keys that are two seconds apart too.
+    /// Hermite form: tangents are per second, so the cubic of a line is that line, even if keyframes are two seconds
+    /// apart.
     #[test]
     fn cubics_follow_their_tangents() {
         let line = curve(Interpolation::Cubic, 1, &[3.0, 1.0, 3.0, 3.0, 4.0, 3.0, 3.0, 10.0, 3.0]);
@@ -124,7 +125,7 @@ mod tests {
         assert_eq!([still.at(1.5)[0], still.at(1.25)[0]], [4.0, 1.25]);
     }
 
-    /// Rotations go along the shorter arc at an even pace, whatever the sign of their quaternions.
+    /// Rotations follow the shorter arc at a constant speed, independent of quaternion signs.
     #[test]
     fn rotations_take_the_shorter_arc() {
         let quarter = [0.0, FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2];

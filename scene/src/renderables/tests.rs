@@ -1,4 +1,4 @@
-//! Instances as arrays: groups, rows and updates.
+//! Renderables: groups, blocks and updates.
 
 use super::*;
 use crate::material::Material;
@@ -20,7 +20,7 @@ fn scene() -> Scene {
     scene
 }
 
-/// Together is drawn what has mesh, material and side in common; for depth the material of opaque ones does not count.
+/// Instances with the same mesh, material and winding are grouped; for depth the material of opaque ones is ignored.
 #[test]
 fn groups_have_in_common_what_draws_set() {
     let own = Renderables::new(&scene());
@@ -34,7 +34,7 @@ fn groups_have_in_common_what_draws_set() {
     assert_eq!((own.flat(), own.solid_casters().max.x), (&[(5, 1)][..], 10.0));
 }
 
-/// Lines and points leave depth and cast nothing, and are drawn apart from triangles.
+/// Lines and points write depth, cast no shadows, and are not grouped with triangles.
 #[test]
 fn lines_and_points_do_not_cast() {
     let topologies = [Topology::Triangles, Topology::Lines, Topology::Points];
@@ -46,11 +46,11 @@ fn lines_and_points_do_not_cast() {
     let own = Renderables::new(&scene);
     assert_eq!((own.casts(), own.kinds()), (&[false, false, true][..], &[DrawKind::Opaque; 3][..]));
     assert_eq!((own.solid_casters().max.x, own.whole().max.x), (1.0, 21.0));
-    // Groups are in the order of topologies, so that each is drawn in a row.
+    // Groups are sorted by topology, so each topology is drawn consecutively.
     assert_eq!((own.surfaces().of.as_slice(), own.depths().of.as_slice()), (&[2, 1, 0][..], &[2, 1, 0][..]));
 }
 
-/// Instances of other layers are as if they were not in the scene.
+/// Instances on hidden layers behave as if absent.
 #[test]
 fn hidden_instances_have_no_bounds_and_cast_nothing() {
     let mut scene = scene();
@@ -72,7 +72,7 @@ fn hidden_instances_have_no_bounds_and_cast_nothing() {
     assert_eq!(seen, [0, 1, 2, 4]);
 }
 
-/// Instances that light reaches otherwise are drawn apart, but for depth.
+/// Instances with different light state are separate, except for depth.
 #[test]
 fn draw_options_keep_instances_apart() {
     let mut scene = scene();
@@ -86,7 +86,7 @@ fn draw_options_keep_instances_apart() {
     assert_eq!((&own.casts()[..3], own.common_light_channels()), (&[true, true, false][..], 1));
 }
 
-/// Whether rows are taken whole, in part or not at all.
+/// Blocks are used entirely, in part or not at all.
 #[test]
 fn the_box_around_some_is_that_of_each() {
     let at = |i: usize| DMat4::from_translation(DVec3::new((i * 37 % 200) as f64, (i * 91 % 300) as f64, i as f64));
@@ -107,7 +107,7 @@ fn the_box_around_some_is_that_of_each() {
     }
 }
 
-/// What moved is where it would be had all been made anew, and nothing else changes its stamp.
+/// An update gives the result of building anew, and changes no other hash.
 #[test]
 fn an_update_is_as_making_anew() {
     let mut scene = scene();

@@ -17,7 +17,7 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// Returns the format that loses least: ETC1S is a subset of ETC2, UASTC of ASTC, and BC7 is close to both.
+    /// Returns the format with the least loss: ETC1S is a subset of ETC2, UASTC of ASTC, and BC7 is close to both.
     pub fn block_format(self, formats: BlockFormats) -> ImageFormat {
         let etc2 = (formats.etc2, ImageFormat::Etc2Rgba8);
         let bc7 = (formats.bc7, ImageFormat::Bc7);
@@ -30,18 +30,18 @@ impl Source {
     }
 }
 
-/// Returns the maximum number of bytes that transcoding ETC1S allocates beside its output. A block has indices of 8 bytes;
-/// code books have at most 65,535 endpoints and selectors, with their Huffman tables.
+/// Returns the maximum number of bytes that transcoding ETC1S allocates in addition to its output. A block has indices
+/// of 8 bytes. Code books have at most 65,535 endpoints and selectors, with their Huffman tables.
 pub(super) fn etc1s_working_bytes(size_texels: [u32; 2]) -> u64 {
     let blocks = ImageFormat::Etc2Rgba8.level_bytes(size_texels) / 16;
     8 * blocks + (2 << 20)
 }
 
-/// A KTX2 file that the transcoder is given: without supercompression other than BasisLZ, which is part of the codec.
+/// A KTX2 file for the transcoder: without supercompression other than BasisLZ, which is part of the codec.
 pub(super) struct BasisFile<'a>(Cow<'a, [u8]>);
 
 impl<'a> BasisFile<'a> {
-    /// Returns a file of ETC1S as it is, if it holds all of these levels.
+    /// Returns an ETC1S file unchanged if it contains all of these levels.
     pub fn of_etc1s(bytes: &'a [u8], levels: &[IndexEntry]) -> Result<Self, KtxError> {
         for entry in levels {
             within(bytes, entry.at, entry.length, "levels")?;
@@ -49,7 +49,7 @@ impl<'a> BasisFile<'a> {
         Ok(Self(bytes.into()))
     }
 
-    /// Returns a file of UASTC with these levels, decompressed, and this data format descriptor.
+    /// Builds a UASTC file from decompressed levels and a data format descriptor.
     pub fn of_uastc([width, height]: [u32; 2], descriptor: &[u8], levels: &[Vec<u8>]) -> Self {
         let (count, level_bytes) = (levels.len(), levels.iter().map(Vec::len).sum::<usize>());
         let descriptor_at = HEADER_BYTES + count * INDEX_BYTES;
@@ -89,9 +89,9 @@ impl<'a> BasisFile<'a> {
     }
 }
 
-/// The mark of version 2 (KTX 2.0, section 3.1).
+/// Identifier of version 2 (KTX 2.0, section 3.1).
 const MARK: [u8; 12] = [0xab, b'K', b'T', b'X', b' ', b'2', b'0', 0xbb, b'\r', b'\n', 0x1a, b'\n'];
-/// Bytes of the mark and the header, in front of the index of levels.
+/// Bytes of the identifier and the header, before the level index.
 const HEADER_BYTES: usize = 80;
-/// Bytes of an entry of the index.
+/// Bytes of an entry of the level index.
 const INDEX_BYTES: usize = 24;

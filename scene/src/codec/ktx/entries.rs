@@ -1,14 +1,14 @@
-//! Metadata: keys with values, of which irradiance is read.
+//! Key-value metadata, of which irradiance is read.
 
 use super::cube::Harmonics;
 use super::error::KtxError;
 use super::reader::Reader;
 
-/// The key of irradiance.
+/// Key of irradiance.
 const KEY: &[u8] = b"sh";
 
-/// The value under `sh`, if there is one. An entry is its length, then a key that ends with a zero, then the value, padded
-/// to four bytes; `what` is all of them.
+/// Returns the value of the key `sh`, if any, from the metadata `what`. An entry is its length, a key that ends with a
+/// zero byte, and the value, padded to four bytes.
 pub(super) fn harmonics(what: &[u8], big_endian: bool) -> Result<Option<Harmonics>, KtxError> {
     let mut reader = Reader { bytes: what, at: 0, big_endian, what: "metadata" };
     let mut found = None;
@@ -19,14 +19,14 @@ pub(super) fn harmonics(what: &[u8], big_endian: bool) -> Result<Option<Harmonic
         if &entry[..end] == KEY {
             found = Some(numbers(&entry[end + 1..])?);
         }
-        // The padding of the last entry may be left out.
+        // The padding of the last entry may be missing.
         let padding = length.next_multiple_of(4) - length;
         reader.at = (reader.at + padding).min(what.len());
     }
     Ok(found)
 }
 
-/// Nine colors as text, a line each.
+/// Parses nine colors as text, one per line.
 fn numbers(value: &[u8]) -> Result<Harmonics, KtxError> {
     let text = std::str::from_utf8(value).map_err(|_| KtxError::Harmonics)?;
     let words = text.trim_end_matches('\0').split_ascii_whitespace();
@@ -35,6 +35,6 @@ fn numbers(value: &[u8]) -> Result<Harmonics, KtxError> {
     for number in harmonics.as_flattened_mut() {
         *number = numbers.next().flatten().ok_or(KtxError::Harmonics)?;
     }
-    // Further bands would be of no use to who knows three; a file with other than nine colors is no such file.
+    // Only files with exactly nine colors (three bands) are valid.
     if numbers.next().is_some() { Err(KtxError::Harmonics) } else { Ok(harmonics) }
 }

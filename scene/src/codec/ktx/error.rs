@@ -1,119 +1,119 @@
-//! What a Khronos texture gets wrong.
+//! Errors in Khronos textures.
 
 use super::texel::TexelFormat;
 
-/// Errors of a Khronos texture as a cube of light, or as a texture of a material.
+/// Error in a Khronos texture used as a cube map of radiance or as a texture of a material.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KtxError {
-    /// The file ends too soon.
+    /// The file is truncated.
     #[error("it ends within its {what}")]
     CutShort {
-        /// What is not there whole.
+        /// Truncated part of the file.
         what: &'static str,
     },
-    /// The mark of the order of bytes is none.
+    /// The byte-order mark is invalid.
     #[error("its mark of endianness is {mark:#010x}, neither 0x04030201 nor 0x01020304")]
     Endianness {
-        /// The mark as little-endian bytes.
+        /// Byte-order mark, read as little-endian.
         mark: u32,
     },
-    /// It is another texture than a cube.
+    /// The texture is not a cube map.
     #[error(
         "it has {faces} faces, depth {depth} and {layers} layers; a cube has six faces, and is neither deep nor an array"
     )]
     NoCube {
-        /// Faces that it has.
+        /// Number of faces.
         faces: u32,
-        /// Its depth in texels.
+        /// Depth in texels.
         depth: u32,
-        /// Elements of an array.
+        /// Number of array layers.
         layers: u32,
     },
-    /// Faces are not square.
+    /// The faces are not square.
     #[error("its faces are {}×{}, not square", size_texels[0], size_texels[1])]
     NotSquare {
         /// Width and height.
         size_texels: [u32; 2],
     },
-    /// There are more levels than the size has.
+    /// The number of levels exceeds the full mip chain.
     #[error("it has {levels} levels, more than a side of {size_texels} texels has")]
     Levels {
-        /// Levels that it has.
+        /// Number of levels.
         levels: u32,
-        /// Its longer side.
+        /// Longer side.
         size_texels: u32,
     },
-    /// Texels are of a format that is not read.
+    /// The texel format is not supported.
     #[error("its texels are of {api} format {number:#x}; {} are read", TexelFormat::NAMES)]
     Format {
-        /// Whose number it is: `OpenGL` or `Vulkan`.
+        /// API whose format number it is: `OpenGL` or `Vulkan`.
         api: &'static str,
-        /// The format.
+        /// Format number.
         number: u32,
     },
-    /// Levels are compressed.
+    /// The levels are supercompressed.
     #[error(
         "its levels are supercompressed (scheme {scheme}); write it without (`toktx` without `--zcmp` or `--encode`)"
     )]
     Supercompressed {
-        /// The number of the scheme.
+        /// Number of the supercompression scheme.
         scheme: u32,
     },
-    /// A level has another length than its size asks for.
+    /// The length of a level does not match its size.
     #[error("level {level} has {found} bytes, not {expected}")]
     LevelBytes {
-        /// The level, 0 the finest.
+        /// Level number, 0 the finest.
         level: u32,
-        /// Bytes that the file states: of a face in version 1, of the level in version 2.
+        /// Bytes according to the file: of a face in version 1, of the level in version 2.
         found: u64,
-        /// Bytes that there should be.
+        /// Expected number of bytes.
         expected: u64,
     },
-    /// A texture of a material is a cube, deep, or an array.
-    #[error("it has {faces} faces, depth {depth} and {layers} layers; write it as one flat picture")]
+    /// A texture of a material is a cube map, a 3D texture or an array.
+    #[error("it has {faces} faces, depth {depth} and {layers} layers; write it as a single 2D image")]
     NotFlat {
-        /// Faces that it has.
+        /// Number of faces.
         faces: u32,
-        /// Its depth in texels.
+        /// Depth in texels.
         depth: u32,
-        /// Elements of an array.
+        /// Number of array layers.
         layers: u32,
     },
-    /// Texels of a texture are of a format that is not read.
+    /// The texel format of a texture is not supported.
     #[error(
         "its texels are of Vulkan format {format} and color model {model}; write Basis Universal (ETC1S or UASTC), or RGB or RGBA of 8 bits"
     )]
     Texels {
-        /// Number of Vulkan's format, 0 for Basis Universal.
+        /// Vulkan format number, 0 for Basis Universal.
         format: u32,
         /// Color model of the data format descriptor.
         model: u8,
     },
-    /// Levels of a texture are compressed in a way that is not read, or that does not go with its texels.
+    /// The supercompression scheme is not supported, or does not suit the texel format.
     #[error("its supercompression scheme is {scheme}; write BasisLZ for ETC1S, and none, Zstandard or zlib for others")]
     Scheme {
-        /// The number of the scheme.
+        /// Number of the supercompression scheme.
         scheme: u32,
     },
-    /// A level does not decompress.
+    /// A level cannot be decompressed.
     #[error("level {level} does not decompress to {expected} bytes")]
     Inflate {
-        /// The level, 0 the finest.
+        /// Level number, 0 the finest.
         level: u32,
-        /// Bytes that there should be.
+        /// Expected number of bytes.
         expected: u64,
     },
-    /// The texels of a level do not transcode.
+    /// The texels of a level cannot be transcoded.
     #[error("level {level} holds no valid texels of Basis Universal")]
     Transcode {
-        /// The level, 0 the finest.
+        /// Level number, 0 the finest.
         level: u32,
     },
-    /// A metadatum reaches beyond the metadata, or has no key.
+    /// A metadata entry exceeds the metadata, or has no key.
     #[error("an entry of its metadata is broken")]
     Entry,
-    /// Irradiance is unreadable.
+    /// The irradiance is invalid.
     #[error("its metadatum `sh` does not hold nine lines of three finite numbers")]
     Harmonics,
 }

@@ -26,18 +26,18 @@ impl Scheme {
         }
     }
 
-    /// Returns the bytes that decompression of a level takes at most beside its output.
+    /// Returns the maximum number of bytes that decompression of a level allocates in addition to its output.
     pub fn working_bytes(self, level_bytes: u64) -> u64 {
         match self {
             Self::Plain => 0,
             Self::Zstandard => 2 * level_bytes.max(ZSTD_WINDOW_BYTES),
-            // A `Vec` that grows, and the window of 32 KiB.
+            // A growing `Vec`, and the window of 32 KiB.
             Self::Zlib => level_bytes + (64 << 10),
         }
     }
 }
 
-/// Returns the level if it has exactly `expected` bytes once it is decompressed. No more than that is ever written.
+/// Returns the decompressed level if it has exactly `expected` bytes. Never writes more than that.
 pub(super) fn inflate(scheme: Scheme, bytes: &[u8], expected: usize) -> Option<Vec<u8>> {
     match scheme {
         Scheme::Plain => (bytes.len() == expected).then(|| bytes.to_vec()),
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(inflate(Scheme::Plain, &[1, 2], 1), None);
     }
 
-    /// A frame that states a window of 2 GiB takes no such memory.
+    /// A frame that states a window of 2 GiB does not allocate it.
     #[test]
     fn large_windows_are_refused() {
         let huge = [0x28, 0xb5, 0x2f, 0xfd, 0x00, 0xa8, 0x01, 0x00, 0x00];

@@ -1,13 +1,13 @@
-//! Numbers from the front of a file.
+//! Reader of numbers at the front of a file.
 
 use super::error::KtxError;
 
-/// Takes numbers from the front of a file.
+/// Reads numbers from the front of a file.
 pub(super) struct Reader<'a> {
     pub bytes: &'a [u8],
     pub at: usize,
     pub big_endian: bool,
-    /// What is being read, for errors.
+    /// Name of the part being read, for errors.
     pub what: &'static str,
 }
 
@@ -32,7 +32,7 @@ impl<'a> Reader<'a> {
         Ok(numbers)
     }
 
-    /// 64 bits, lower half first: version 2 alone has them, and is little-endian.
+    /// Reads 64 bits, lower half first; only version 2 has them, which is little-endian.
     pub fn u64(&mut self) -> Result<u64, KtxError> {
         let [low, high] = self.u32s()?;
         Ok(u64::from(low) | u64::from(high) << 32)

@@ -2,24 +2,24 @@
 
 use half::f16;
 
-/// How a texel is stored.
+/// Storage format of a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TexelFormat {
-    /// So many half floats.
+    /// Number of half-float channels.
     Half(usize),
-    /// So many floats of 32 bits.
+    /// Number of 32-bit float channels.
     Float(usize),
-    /// Red and green of 11 bits, blue of 10, red in the lowest: 5 bits of exponent each, no sign.
+    /// Packed floats: red and green with 11 bits, blue with 10, red in the lowest bits; 5-bit exponents, no sign.
     Rg11b10,
-    /// Three mantissas of 9 bits, red in the lowest, with one exponent of 5 bits.
+    /// Shared exponent: three mantissas of 9 bits, red in the lowest bits, and an exponent of 5 bits.
     Rgb9e5,
 }
 
 impl TexelFormat {
-    /// The formats, for errors.
+    /// Names of the supported formats, for errors.
     pub const NAMES: &'static str = "RGBA and RGB of 16 or 32 bits, R11G11B10 and RGB9E5 (all floating-point)";
 
-    /// By the number of OpenGL's internal format.
+    /// Returns the format for an OpenGL internal format number.
     pub fn of_gl(number: u32) -> Option<Self> {
         Some(match number {
             0x881a => Self::Half(4),
@@ -32,7 +32,7 @@ impl TexelFormat {
         })
     }
 
-    /// By the number of Vulkan's format.
+    /// Returns the format for a Vulkan format number.
     pub fn of_vulkan(number: u32) -> Option<Self> {
         Some(match number {
             97 => Self::Half(4),
@@ -45,7 +45,7 @@ impl TexelFormat {
         })
     }
 
-    /// Bytes of a texel.
+    /// Returns the bytes of a texel.
     pub fn bytes(self) -> usize {
         match self {
             Self::Half(channels) => 2 * channels,
@@ -54,7 +54,7 @@ impl TexelFormat {
         }
     }
 
-    /// Red, green and blue of a texel, alpha 1.
+    /// Returns red, green and blue of a texel, with alpha 1.
     pub fn decode(self, bytes: &[u8], big_endian: bool) -> [f32; 4] {
         let half = |at: usize| f16::from_bits(word(&bytes[2 * at..2 * at + 2], big_endian) as u16).to_f32();
         let float = |at: usize| f32::from_bits(word(&bytes[4 * at..4 * at + 4], big_endian));
@@ -63,7 +63,7 @@ impl TexelFormat {
             Self::Float(_) => [0, 1, 2].map(float),
             Self::Rg11b10 => {
                 let packed = word(bytes, big_endian);
-                // A half float without its sign and the lowest bits of its mantissa.
+                // Half float without its sign bit and the lowest mantissa bits.
                 let short = |bits: u32, drop: u32| f16::from_bits((bits << drop) as u16).to_f32();
                 [short(packed & 0x7ff, 4), short(packed >> 11 & 0x7ff, 4), short(packed >> 22, 5)]
             }
@@ -77,7 +77,7 @@ impl TexelFormat {
     }
 }
 
-/// Two or four bytes as a number.
+/// Reads two or four bytes as a number.
 fn word(bytes: &[u8], big_endian: bool) -> u32 {
     let add = |sum: u32, byte: &u8| sum << 8 | u32::from(*byte);
     if big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }

@@ -1,4 +1,5 @@
-//! Textures of materials in version 2 (KHR_texture_basisu): one flat picture of Basis Universal, or of eight bits a channel.
+//! Textures of materials in version 2 (KHR_texture_basisu): one 2D image in Basis Universal or with eight bits a
+//! channel.
 
 use super::basis::{BasisFile, Source};
 use super::error::KtxError;
@@ -20,9 +21,9 @@ const MODEL_AT: u64 = 12;
 /// Layout of texels in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Texels {
-    /// Three bytes each.
+    /// Three bytes a texel.
     Rgb8,
-    /// Four bytes each.
+    /// Four bytes a texel.
     Rgba8,
     /// Basis Universal.
     Basis(Source),
@@ -40,7 +41,7 @@ impl Texels {
         }
     }
 
-    /// Returns the bytes of a level in the file once it is decompressed; `None` where they depend on its content.
+    /// Returns the decompressed bytes of a level in the file; `None` if they depend on its content.
     fn level_bytes(self, [width, height]: [u32; 2]) -> Option<u64> {
         let texels = u64::from(width) * u64::from(height);
         match self {
@@ -57,9 +58,9 @@ pub(in crate::codec) struct Header {
     size_texels: [u32; 2],
     texels: Texels,
     scheme: Scheme,
-    /// Format to which texels are decoded.
+    /// Format of decoded texels.
     format: ImageFormat,
-    /// The levels that are decoded, finest first: all, or the first one where some are missing.
+    /// Levels to decode, finest first: all, or only the first if some are missing.
     levels: Vec<IndexEntry>,
     /// Offset and length of the data format descriptor.
     descriptor: [u32; 2],
@@ -87,7 +88,7 @@ pub(in crate::codec) fn header(
         _ => Scheme::of(fields.scheme),
     };
     let scheme = of_number.ok_or(KtxError::Scheme { scheme: fields.scheme })?;
-    // No levels ask the reader to make them.
+    // Zero levels ask the reader to generate the mip chain.
     let (count, full) = (shape.levels.max(1), level_count(size_texels[0], size_texels[1]));
     if count > full {
         let side = size_texels[0].max(size_texels[1]);
@@ -105,7 +106,7 @@ pub(in crate::codec) fn header(
             _ => {}
         }
     }
-    // Devices ask for whole blocks at the first level.
+    // Block formats require a first level of whole blocks.
     let has_whole_blocks = size_texels.iter().all(|side| side.is_multiple_of(4));
     let format = match texels {
         Texels::Basis(source) if is_complete && has_whole_blocks => source.block_format(formats),
@@ -115,7 +116,7 @@ pub(in crate::codec) fn header(
 }
 
 impl Header {
-    /// Returns the size of the texture, and the bytes that it takes.
+    /// Returns the size and memory needs of the texture.
     pub fn summary(&self) -> TextureHeader {
         let sizes = || (0..self.levels.len() as u32).map(|level| level_size(self.size_texels, level));
         let image_bytes = sizes().map(|size| self.format.level_bytes(size)).sum();
@@ -124,14 +125,14 @@ impl Header {
             texels => {
                 let inflated: u64 = sizes().filter_map(|size| texels.level_bytes(size)).sum();
                 let largest = texels.level_bytes(self.size_texels).unwrap_or(0);
-                // The levels together, once more each as it is decompressed.
+                // All levels together, and each a second time while it is decompressed.
                 2 * inflated + self.scheme.working_bytes(largest)
             }
         };
         TextureHeader { size_texels: self.size_texels, image_bytes, working_bytes }
     }
 
-    /// Returns the bytes of a level, decompressed. Not for ETC1S, whose levels are decompressed as they are transcoded.
+    /// Returns the decompressed bytes of a level. Not for ETC1S, which the transcoder decompresses.
     fn inflated(&self, bytes: &[u8], level: u32) -> Result<Vec<u8>, CodecError> {
         let entry = &self.levels[level as usize];
         let expected = self.texels.level_bytes(level_size(self.size_texels, level)).unwrap_or(0);
@@ -140,7 +141,8 @@ impl Header {
     }
 }
 
-/// Decodes the levels of a texture: to blocks of one of `formats` where that is possible, to RGBA of eight bits otherwise.
+/// Decodes the levels of a texture: to one of the block `formats` if possible, otherwise to RGBA with eight bits a
+/// channel.
 pub(in crate::codec) fn decode(
     bytes: &[u8],
     max_side_texels: u32,

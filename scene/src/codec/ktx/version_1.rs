@@ -1,4 +1,4 @@
-//! Version 1: a header of 16 words, metadata, then each level behind its length.
+//! Version 1: a header of 16 words, metadata, then each level preceded by its length.
 
 use super::cube::{CubeHeader, Shape, level_texels};
 use super::entries::harmonics;
@@ -7,7 +7,7 @@ use super::reader::Reader;
 use super::texel::TexelFormat;
 use crate::codec::error::CodecError;
 
-/// Bytes of the file's mark, which the caller has seen.
+/// Bytes of the identifier, which the caller has checked.
 const MARK_BYTES: usize = 12;
 const LITTLE_ENDIAN: u32 = 0x0403_0201;
 const BIG_ENDIAN: u32 = 0x0102_0304;
@@ -33,8 +33,8 @@ pub(super) fn header(bytes: &[u8], max_texels: u32) -> Result<CubeHeader, CodecE
     Ok(CubeHeader { size_texels, harmonics, format, big_endian: reader.big_endian, levels })
 }
 
-/// The bytes of the next level. Each face, and so the level, is padded to four bytes; of a cube that is no array the length
-/// is that of one face.
+/// Returns the bytes of the next level. Faces and levels are padded to four bytes. For a cube map that is not an array,
+/// the stored length is that of one face.
 fn level_of(
     reader: &mut Reader<'_>,
     size_texels: u32,

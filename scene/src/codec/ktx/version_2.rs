@@ -1,4 +1,4 @@
-//! Version 2: a header, an index of levels, metadata, then the levels wherever the index says. Always little-endian.
+//! Version 2: a header, an index of levels, metadata, and the levels at the offsets of the index. Always little-endian.
 
 use std::ops::Range;
 
@@ -9,12 +9,12 @@ use super::reader::Reader;
 use super::texel::TexelFormat;
 use crate::codec::error::CodecError;
 
-/// Bytes of the file's mark, which the caller has seen.
+/// Bytes of the identifier, which the caller has checked.
 const MARK_BYTES: usize = 12;
 
 /// The header of a file (KTX 2.0, section 3).
 pub(super) struct Fields<'a> {
-    /// Number of Vulkan's format, 0 where there is none.
+    /// Vulkan format number, 0 if there is none.
     pub vulkan_format: u32,
     pub shape: Shape,
     /// Number of the supercompression scheme, 0 for none.
@@ -33,7 +33,7 @@ pub(super) struct IndexEntry {
     pub at: u64,
     /// Bytes in the file.
     pub length: u64,
-    /// Bytes once it is decompressed.
+    /// Bytes after decompression.
     #[cfg_attr(not(feature = "basisu"), allow(dead_code, reason = "textures alone may be supercompressed"))]
     pub whole: u64,
 }
@@ -52,7 +52,7 @@ impl<'a> Fields<'a> {
         Ok(Self { vulkan_format, shape, scheme, descriptor, metadata: [metadata_at, metadata_bytes], reader })
     }
 
-    /// Reads the first `levels` entries of the index, which the caller has checked to be few.
+    /// Reads the first `levels` entries of the index; the caller has checked that there are few.
     pub fn index(mut self, levels: u32) -> Result<Vec<IndexEntry>, KtxError> {
         let entry =
             |_| Ok(IndexEntry { at: self.reader.u64()?, length: self.reader.u64()?, whole: self.reader.u64()? });
@@ -82,7 +82,7 @@ pub(super) fn header(bytes: &[u8], max_texels: u32) -> Result<CubeHeader, CodecE
     Ok(CubeHeader { size_texels, harmonics, format, big_endian: false, levels: ranges })
 }
 
-/// A part of the file, if the file has it.
+/// Returns a byte range of the file, or an error if it exceeds the file.
 pub(super) fn within(bytes: &[u8], at: u64, length: u64, what: &'static str) -> Result<Range<usize>, KtxError> {
     let end = at.checked_add(length).filter(|end| *end <= bytes.len() as u64).ok_or(KtxError::CutShort { what })?;
     Ok(at as usize..end as usize)

@@ -1,4 +1,4 @@
-//! Compressed textures: the files under `tests/textures`, against their source pictures and the reference decoders.
+//! Compressed textures under `tests/textures`, compared with their source images and reference decoders.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ fn read(name: &str) -> Vec<u8> {
     std::fs::read(path).expect("it can be read")
 }
 
-/// A PNG file as RGBA, by another decoder.
+/// Decodes a PNG file to RGBA with another decoder.
 fn png(name: &str) -> Vec<u8> {
     image::load_from_memory(&read(name)).expect("a good file").into_rgba8().into_raw()
 }
@@ -35,8 +35,8 @@ fn psnr_db(a: &[u8], b: &[u8]) -> f64 {
     10.0 * (255.0 * 255.0 * a.len() as f64 / square).log10()
 }
 
-/// ETC1S has one color of 5 bits a channel for each block, with brightness in four steps: its error is that of the encoder at
-/// its best. The measured values are 41.1 dB for ETC1S, 48.1 dB and more for UASTC, and 48.9 dB for lossy WebP.
+/// ETC1S has one 5-bit color per block with four brightness steps, so its error is that of the encoder. Measured: 41.1
+/// dB for ETC1S, at least 48.1 dB for UASTC, and 48.9 dB for lossy WebP.
 #[test]
 fn textures_are_close_to_their_sources() {
     for (name, source, least_db) in [
@@ -81,13 +81,13 @@ fn textures_equal_the_reference_decoders() {
     }
 }
 
-/// FNV-1a of 64 bits over all levels.
+/// FNV-1a hash of 64 bits over all levels.
 fn hash(levels: &[Vec<u8>]) -> u64 {
     let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
     levels.iter().flatten().fold(0xcbf2_9ce4_8422_2325, step)
 }
 
-/// Every level in every format, by hashes of what the reference transcoder writes.
+/// Every level in every format, compared with hashes of the reference transcoder's output.
 #[test]
 fn blocks_equal_the_reference_transcoder() {
     let lines = String::from_utf8(read("levels.txt")).expect("text");
@@ -103,7 +103,7 @@ fn blocks_equal_the_reference_transcoder() {
         };
         let texture = decoded(name, formats);
         if texture.format != format {
-            // One level of several, or no whole blocks.
+            // Rejected files have one of several levels, or partial blocks.
             assert!(name.starts_with("odd") || name.starts_with("color_one_level"), "{line}");
             assert_eq!(texture.format, ImageFormat::Rgba8);
             continue;
@@ -137,7 +137,7 @@ fn supercompression_changes_no_texel() {
     }
 }
 
-/// The header of a KTX2 file with a number written over it.
+/// Returns a KTX2 file with a number in its header overwritten.
 fn with_u32(name: &str, at: usize, value: u32) -> Vec<u8> {
     let mut bytes = read(name);
     bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -155,7 +155,7 @@ fn broken_textures_say_why() {
         (with_u32(name, 12, 145), "its texels are of Vulkan format 145 and color model 166; write Basis"),
         (with_u32(name, 20, MAX + 4), "width in texels is 4100, over the limit of 4096"),
         (with_u32(name, 24, 0), "its size is 64×0"),
-        (with_u32(name, 36, 6), "it has 6 faces, depth 0 and 0 layers; write it as one flat picture"),
+        (with_u32(name, 36, 6), "it has 6 faces, depth 0 and 0 layers; write it as a single 2D image"),
         (with_u32(name, 40, 8), "it has 8 levels, more than a side of 64 texels has"),
         (with_u32(name, 44, 1), "its supercompression scheme is 1; write BasisLZ for ETC1S"),
         (with_u32("color_etc1s.ktx2", 44, 2), "its supercompression scheme is 2"),
@@ -174,7 +174,7 @@ fn broken_textures_say_why() {
     assert_eq!(error(&broken), "level 0 does not decompress to 4096 bytes");
 }
 
-/// Sixteen gigabytes are claimed; the header alone refuses them, and so does decoding.
+/// The header claims sixteen gigabytes; both reading it and decoding fail.
 #[test]
 fn large_sizes_are_refused_before_they_are_allocated() {
     let mut ktx = with_u32("color_etc1s.ktx2", 20, 1 << 17);
@@ -187,7 +187,7 @@ fn large_sizes_are_refused_before_they_are_allocated() {
         assert!(matches!(header, CodecError::TooLarge { .. }), "{header}");
         assert_eq!(header.to_string(), decoded.to_string());
     }
-    // The frame of a WebP picture may claim another size than the picture: 16 texels, and 16,383 in the frame.
+    // The frame of a WebP image may claim another size than the image: 16 texels, but 16,383 in the frame.
     let mut extended = read("color_lossy.webp");
     assert_eq!(&extended[12..16], b"VP8X");
     let at = extended.windows(4).position(|name| name == b"VP8 ").expect("it is lossy");
@@ -196,7 +196,7 @@ fn large_sizes_are_refused_before_they_are_allocated() {
     assert_eq!(error, "its size is 64×64, but that of its frame is 16383×16383");
 }
 
-/// A fixed sequence of pseudo-random numbers (SplitMix64).
+/// Deterministic pseudo-random numbers (SplitMix64).
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;
@@ -205,7 +205,7 @@ fn random(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Damaged files decode to levels of the right size or fail with a line.
+/// Damaged files decode to levels of the right size, or fail with a one-line error.
 #[test]
 fn damaged_textures_never_panic() {
     let mut state = 1;
@@ -226,7 +226,7 @@ fn damaged_textures_never_panic() {
                 bytes.truncate(random(&mut state) as usize % whole.len());
             }
             for _ in 0..round % 4 * 2 {
-                // Half of the damage hits the header and the index.
+                // Half of the damage affects the header and the index.
                 let reach = if random(&mut state).is_multiple_of(2) { 300.min(bytes.len()) } else { bytes.len() };
                 let at = random(&mut state) as usize % reach;
                 bytes[at] ^= 1 << (random(&mut state) % 8);

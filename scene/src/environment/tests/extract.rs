@@ -1,4 +1,4 @@
-//! Suns taken out of maps: of known ones, and of real maps.
+//! Sun extraction from synthetic and real maps.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,7 +9,7 @@ use crate::light::LightKind;
 use crate::progress::silent;
 use crate::test_files::file;
 
-/// A gradient of 1 to 2 with a disc of `radiance` and `radius_rad` toward `sun`.
+/// Returns a gradient of 1 to 2 with a disc of `radiance` and `radius_rad` toward `sun`.
 fn with_disc(width: u32, sun: DVec3, radius_rad: f64, radiance: f64) -> EquirectMap {
     EquirectMap::from_fn(width, width / 2, |d| {
         let sky = DVec3::splat(1.5 + 0.5 * d.y);
@@ -42,13 +42,13 @@ fn a_known_disc_becomes_its_light() {
     let (lux, angular_radius) = kind(&light.kind);
     let solid_angle = TAU * (1.0 - radius.cos());
     let luminance = 0.2126 + 0.9 * 0.7152 + 0.7 * 0.0722;
-    // 48 texels make the disc: its area is off by a few.
+    // The disc has 48 texels, so its area is inexact.
     assert!((lux / (radiance * luminance * solid_angle) - 1.0).abs() < 0.05, "{lux}");
     assert!((angular_radius / radius - 1.0).abs() < 0.03, "{angular_radius}");
     // Half a texel is 1.5 mrad.
     assert!((-light.direction.as_dvec3()).dot(sun) > (0.0015_f64).cos(), "{}", light.direction);
     assert!((light.color.y / light.color.x - 0.9).abs() < 1e-3);
-    // Light and what is left of the map give the irradiance that there was.
+    // The light and the remaining map give the original irradiance.
     let color = light.color.as_dvec3() * lux;
     for (n, before) in [sun, DVec3::Y, DVec3::NEG_X].into_iter().zip(before) {
         let direct = color * (-light.direction.as_dvec3()).dot(n).max(0.0);
@@ -74,12 +74,12 @@ fn what_is_large_or_dim_is_no_sun() {
         assert!(matches!(found, SunExtraction::None { contrast } if contrast < 20.0), "{found}");
         assert!(environment.map == map && environment.sun.is_none());
     }
-    // The procedural sky has its sun apart.
+    // The sun of the procedural sky is separate.
     let mut sky = Sky::default().environment(64).expect("the default sky");
     assert_eq!(sky.extract_sun(), SunExtraction::Apart);
 }
 
-/// The suns of real maps stand where they are seen, and irradiance is conserved.
+/// Suns of real maps are found where they are visible, and irradiance is conserved.
 #[test]
 fn real_suns_are_found_and_lamps_are_left() {
     for (name, elevation_deg) in [("park", Some(10.2)), ("sunset", Some(3.2)), ("venice", None), ("studio", None)] {
@@ -100,7 +100,7 @@ fn real_suns_are_found_and_lamps_are_left() {
         assert!(radius.to_degrees() > 0.3 && radius.to_degrees() < 1.5, "{name}: {}", radius.to_degrees());
         let after = environment.map.irradiance(DVec3::Y) + light.color.as_dvec3() * (lux * toward.y.max(0.0));
         assert!(((after - before) / before).abs().max_element() < 1e-4, "{name}: {after} for {before}");
-        // Averages fall by the flux of the light over 4π; the spread over its disc is 1e-4 of it.
+        // Averages decrease by the flux of the light over 4π; the spread over its disc is 1e-4 of it.
         let fallen = (total - environment.map.average()) * 4.0 * PI;
         assert!((fallen / (light.color.as_dvec3() * lux) - 1.0).abs().max_element() < 1e-3, "{name}");
     }

@@ -1,4 +1,4 @@
-//! Radiance and OpenEXR files: clean, dirty and damaged.
+//! Radiance and OpenEXR files: clean, lossy and damaged.
 
 use crate::environment::clean::clean;
 use crate::environment::*;
@@ -25,8 +25,8 @@ fn cleaning_counts_each_texel_once() {
     assert_eq!(texels[4], [MAX_RADIANCE, 0.0, 0.0, 1.0]);
 }
 
-/// The clean map and its lossy twin: the twin warns with the count. Once cleaned, both are alike but for the sun, whose red and
-/// green the twin has lost.
+/// A clean map and its lossy copy, which warns with the number of repaired texels. After the repair both are equal
+/// except for the sun, whose red and green are lost in the copy.
 #[test]
 fn real_maps_load_and_the_negative_one_says_so() {
     let (Some(hdr), Some(exr)) =
@@ -45,13 +45,13 @@ fn real_maps_load_and_the_negative_one_says_so() {
         warning.split(&[':', ' ']).find_map(|word| word.parse().ok()).expect("the warning begins with a count");
     assert!(count > 0);
     assert!(negative.map.texels().iter().flatten().all(|c| c.is_finite() && *c >= 0.0));
-    // Around the sun, radiance is below 50.
+    // Radiance away from the sun is below 50.
     let rest = |map: &Environment| -> f64 {
         let sum: f32 = map.map.texels().iter().map(|texel| texel[1]).filter(|green| *green < 50.0).sum();
         f64::from(sum)
     };
     let ratio = rest(&negative) / rest(&park);
-    // The twin lacks the green of 20 texels of the sun with about 19 each, of a sum of 26700.
+    // The copy lacks the green of 20 sun texels with about 19 each, of a sum of 26700.
     assert!((0.98..1.0).contains(&ratio), "{ratio}");
     let sun = |map: &Environment| {
         let brightest = |a: &&[f32; 4], b: &&[f32; 4]| a[2].total_cmp(&b[2]);
@@ -91,8 +91,8 @@ fn damaged_environment_files_are_one_line_errors() {
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
 }
 
-/// A data window of billions of texels around a small picture: found by random damage, it made the
-/// decoder ask for 27 GB.
+/// A data window of billions of texels around a small image, found by random damage: the decoder tried to allocate 27
+/// GB.
 #[test]
 fn a_data_window_without_bound_is_refused() {
     let image = image::Rgba32FImage::from_pixel(8, 4, image::Rgba([1.0; 4]));
@@ -115,8 +115,8 @@ fn a_data_window_without_bound_is_refused() {
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
 }
 
-/// Truncations and flipped bytes of real files: an environment or an error, never a panic, and what
-/// loads is finite and not negative.
+/// Truncated and bit-flipped real files load or return an error, without a panic. Loaded maps are finite and not
+/// negative.
 #[test]
 fn damaged_real_maps_never_panic() {
     for name in ["assets/hdri/venice.hdr", "assets/hdri/park_negative.exr"] {
@@ -138,7 +138,7 @@ fn damaged_real_maps_never_panic() {
             if round % 4 == 0 {
                 bytes.truncate(random(good.len()));
             } else {
-                // Headers decide most, so half of the damage goes there.
+                // Half of the damage affects the headers, which matter most.
                 let span = if round % 2 == 0 { 400 } else { good.len() };
                 for _ in 0..3 {
                     bytes[random(span)] = random(256) as u8;

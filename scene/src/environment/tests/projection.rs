@@ -1,4 +1,4 @@
-//! Maps and spherical harmonics against closed forms and against brute-force integration.
+//! Maps and spherical harmonics compared with closed forms and brute-force integration.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::environment::*;
 
-/// Directions spread evenly over the sphere (a Fibonacci lattice).
+/// Returns directions spread evenly over the sphere (a Fibonacci lattice).
 fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     (0..count).map(move |i| {
         let y = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
@@ -52,7 +52,7 @@ fn solid_angles_cover_the_sphere_and_the_basis_is_orthonormal() {
     for (i, row) in gram.iter().enumerate() {
         for (j, value) in row.iter().enumerate() {
             let exact = if i == j { 1.0 } else { 0.0 };
-            // The midpoint error of degree-8 polynomials at 128 rows.
+            // Error of the midpoint rule for degree-8 polynomials at 128 rows.
             assert!((value - exact).abs() < 2e-3, "{i} {j}: {value}");
         }
     }
@@ -70,14 +70,14 @@ fn a_constant_environment_is_its_own_irradiance() {
         for (i, factor) in factors.iter().enumerate() {
             let exact = if i == 0 { color } else { DVec3::ZERO };
             let error = (glam::Vec3::from(*factor).as_dvec3() - exact).length();
-            // f32 of the factors.
+            // Rounding of the factors to f32.
             assert!(error < 1e-6, "{i}: {factor:?}");
         }
     }
 }
 
-/// A cosine lobe max(0, d·a): irradiance/π for the facing normal is 2/3, and the coefficients of the
-/// lobe are the cosine's own, π/√(4π) and so on.
+/// A cosine lobe max(0, d·a): irradiance/π for the facing normal is 2/3. The coefficients are those of the cosine,
+/// π/√(4π) and so on.
 #[test]
 fn a_cosine_lobe_has_its_known_coefficients() {
     let axis = DVec3::new(1.0, 2.0, -2.0) / 3.0;
@@ -90,16 +90,15 @@ fn a_cosine_lobe_has_its_known_coefficients() {
         let exact = cosine * scale[i] * p[i];
         assert!((c.x - exact).abs() < 2e-4, "{i}: {} for {exact}", c.x);
     }
-    // ∫ cos² over the hemisphere / π = 2/3; three bands hold 1/4 + 1/3 + 5/64 of it.
+    // ∫ cos² over the hemisphere / π = 2/3; three bands contain 1/4 + 1/3 + 5/64 of it.
     let exact = map.irradiance(axis).x / PI;
     assert!((exact - 2.0 / 3.0).abs() < 1e-3);
     let three = sh.irradiance_over_pi_at(axis).x;
     assert!((three - (0.25 + 1.0 / 3.0 + 5.0 / 64.0)).abs() < 1e-3, "{three}");
 }
 
-/// One bright texel: every coefficient is the basis there times its energy, and the irradiance errs
-/// as the accuracy tables say (3 bands: 9.4 % of the peak, −4.0 % at the lowest; 5 bands: 5.9 %,
-/// −3.1 %; 2 bands: 25 %, −25 %).
+/// One bright texel: every coefficient is the basis there times its energy. Irradiance errors relative to the peak are
+/// +9.4 % and −4.0 % with 3 bands, 5.9 % and −3.1 % with 5, and 25 % and −25 % with 2.
 #[test]
 fn a_delta_sun_rings_as_much_as_theory_says() {
     let sun = direction_from_equirect_uv(DVec2::new(100.5 / 256.0, 40.5 / 128.0));
@@ -123,8 +122,8 @@ fn a_delta_sun_rings_as_much_as_theory_says() {
     }
 }
 
-/// Three bands against the sum over all texels, for a sky without its sun, and the polynomial form a
-/// shader uses against the f64 sum.
+/// Three bands are compared with the sum over all texels of a sky without sun. The polynomial form for shaders is
+/// compared with the f64 sum.
 #[test]
 fn sky_irradiance_agrees_with_brute_force() {
     let sky = Sky::default().environment(128).expect("the default sky");
@@ -138,15 +137,15 @@ fn sky_irradiance_agrees_with_brute_force() {
         let errors = normals.iter().zip(&exact).map(|(n, e)| (sh.irradiance_over_pi_at(*n) - *e).abs().max_element());
         errors.fold(0.0, f64::max) / peak
     };
-    // A sky with its bright ring around the sun lies between the table's gradient (0.57 %, 0.14 %)
-    // and its disc of 30° (3.5 %, 1.0 %).
+    // A sky with its bright ring around the sun lies between the table's gradient (0.57 %, 0.14 %) and its disc of 30°
+    // (3.5 %, 1.0 %).
     assert!(worst(&three) < 0.035, "{}", worst(&three));
     assert!(worst(&five) < 0.010, "{}", worst(&five));
     for normal in normals {
         let p = polynomials(normal);
         let shader: DVec3 = factors.iter().zip(p).map(|(f, p)| glam::Vec3::from(*f).as_dvec3() * p).sum();
         let difference = (shader - three.irradiance_over_pi_at(normal)).length();
-        // Nine products of f32 numbers.
+        // Rounding of nine f32 products.
         assert!(difference < 1e-6 * peak * 9.0, "{normal}");
     }
 }

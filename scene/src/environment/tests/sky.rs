@@ -1,4 +1,4 @@
-//! The clear sky and its sun.
+//! Clear sky and sun.
 
 use std::f64::consts::PI;
 
@@ -8,8 +8,8 @@ use crate::color::luminance_from_rec709;
 use crate::environment::*;
 use crate::light::{Light, LightKind};
 
-/// Figures a photometer would agree with (IES RP-21, clear sky, sun at 40°): 0.8 + 15.5 √sin 40° =
-/// 13.2 klx on the ground from the sky, 127.5 e^(−0.21 m) = 92 klx from the sun, blue away from it.
+/// Photometric values of a clear sky with the sun at 40° (IES RP-21). The sky gives 0.8 + 15.5 √sin 40° = 13.2 klx on
+/// the ground, the sun 127.5 e^(−0.21 m) = 92 klx. The sky is blue away from the sun.
 #[test]
 fn the_sky_is_photometrically_plausible() {
     let sky = Sky::default();
@@ -35,9 +35,9 @@ fn the_sky_is_photometrically_plausible() {
             sky_lux += luminance_from_rec709(radiance) * d.y * solid_angle;
         }
     });
-    // 1 % for the integration and a little blue cut off by the gamut.
+    // 1 % for the integration, and for some blue clipped by the gamut.
     assert!((sky_lux / 13_227.0 - 1.0).abs() < 0.01, "{sky_lux} lx");
-    // The ground reflects a fifth of sun and sky: consistent with both.
+    // The ground reflects a fifth of the light of sun and sky.
     let ground = luminance_from_rec709(model.radiance(DVec3::NEG_Y));
     let expected = 0.2 * (sky_lux + f64::from(illuminance_lux) * sky.toward_sun.y) / PI;
     assert!((ground / expected - 1.0).abs() < 0.02, "{ground} for {expected}");

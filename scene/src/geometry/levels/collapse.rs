@@ -1,9 +1,10 @@
-//! Fewer triangles for the same surface: edges collapse, one end onto the other, where that changes least first.
+//! Mesh simplification by collapsing edges, the least change first.
 //!
-//! By quadrics (M. Garland, P. Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997). No vertex moves and none
-//! is made, so that all levels of a mesh share its vertices (half-edge collapses: L. Kobbelt, S. Campagna, H.-P. Seidel, "A General
-//! Framework for Mesh Decimation", Graphics Interface 1998). Vertices at one place are one point of the surface; where they differ in
-//! what else they have there is a seam, which stays a seam, as a border stays a border.
+//! Uses quadric error metrics (M. Garland, P. Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH
+//! 1997). Half-edge collapses neither move nor add vertices, so that all levels of a mesh share its vertices (L.
+//! Kobbelt, S. Campagna, H.-P. Seidel, "A General Framework for Mesh Decimation", Graphics Interface 1998). Vertices at
+//! one position are one point of the surface. If their attributes differ, the point is on a seam; seams and borders are
+//! preserved.
 
 use super::fan::{Corner, Fan, MAX_CORNERS, Spoke};
 use super::quadric::{Quadric, Shift};
@@ -15,61 +16,63 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 use std::hash::Hash;
 
-/// Weight of planes upright on borders and seams, in times the square of their length; those of the surface count by area, so that it
-/// does not matter how finely it is divided.
+/// Weight of the perpendicular planes on borders and seams, relative to the square of the edge length. Planes of the
+/// surface are weighted by area, so the result does not depend on tessellation.
 const BORDER_WEIGHT: f64 = 1.0;
-/// Weight of how far a point goes, in times the square of its square: where the surface is flat what is near comes first.
+/// Weight of the distance that a point moves, relative to its fourth power. On flat surfaces it prefers short edges.
 const MOVED_WEIGHT: f64 = 1e-6;
-/// Cosine of how far a triangle may turn.
+/// Cosine of the maximum rotation of a triangle's normal.
 const MAX_TURN: f64 = 0.5;
-/// Height of a triangle over its longest side, in times that side, below which it is a splinter, unless it was one.
+/// Minimum ratio of a triangle's height to its longest side; narrower triangles are slivers and only accepted if they
+/// were slivers before.
 const LEAST_WIDTH: f64 = 0.05;
 
-/// A surface while its edges collapse.
+/// Surface during simplification.
 pub(super) struct Collapse {
-    /// Where vertices are, from the middle of the mesh.
+    /// Vertex positions relative to the center of the mesh.
     positions: Vec<DVec3>,
-    /// The point of each vertex: the first at its place.
+    /// Point of each vertex: the first vertex at its position.
     point: Vec<u32>,
-    /// What vertices have beside their places: `width` numbers each.
+    /// Attributes of vertices: `width` numbers each.
     values: Vec<f64>,
     width: usize,
-    /// Of the places of vertices, from what they have; and of each of their numbers.
+    /// Attribute quadric of each vertex: the part that depends on position alone. The shifts of each attribute number
+    /// follow.
     of_values: Vec<Quadric>,
     shifts: Vec<Shift>,
-    /// Of points, as is what follows.
+    /// Geometric quadric of each point.
     quadrics: Vec<Quadric>,
-    /// The triangles about each.
+    /// Triangles around each point.
     about: Vec<Vec<u32>>,
-    /// How often what is about each has changed.
+    /// Number of changes to the surroundings of each point.
     changed: Vec<u32>,
-    /// The points that may go with what that changes, the cheapest first; of which some are there as they were before a change.
+    /// Candidate collapses, the cheapest first; entries with an old change count are obsolete.
     candidates: BinaryHeap<Reverse<Candidate>>,
-    /// None where it is gone.
+    /// Triangles; `None` if removed.
     triangles: Vec<Option<[u32; 3]>>,
-    /// Where each triangle faced at first.
+    /// Initial normal of each triangle.
     facing: Vec<DVec3>,
     left: usize,
 }
 
-/// Places are the same that differ by less than this many times the radius of the mesh.
+/// Tolerance for equal positions, relative to the mesh radius.
 const SAME_PLACE: f64 = 1e-6;
 
-/// Of each key the number of the first that is equal.
+/// Returns, for each key, the index of the first equal key.
 fn firsts<K: Hash + Eq>(keys: impl Iterator<Item = K>) -> Vec<u32> {
     let mut first = HashMap::new();
     (0..).zip(keys).map(|(i, key)| *first.entry(key).or_insert(i)).collect()
 }
 
-/// What it changes that a point goes to the other end of an edge: bits of a number that is 0 or more, which are in its order; then the
-/// point, the other end, and how often what is about the point had changed.
+/// Candidate collapse. The cost comes first, as the bits of a non-negative float, which sort like the float. The point,
+/// the other end of the edge, and the point's change count follow.
 type Candidate = (u64, u32, u32, u32);
 
 impl Collapse {
-    /// That of `mesh`, whose vertices, as far as it has triangles of them, lie in `used`.
+    /// Prepares the surface of `mesh`. `used` bounds the vertices that triangles use.
     pub fn new(mesh: &Mesh, streams: &[Stream<'_>], used: &Aabb) -> Self {
         let middle = used.center();
-        // Vertices at one place are a point, and those of them that have the same beside it are one.
+        // Vertices at one position form a point, and those with equal attributes are merged.
         let grid = SAME_PLACE * used.radius().max(f64::MIN_POSITIVE);
         let place = |i: usize| ((mesh.positions[i].as_dvec3() - middle) / grid).round().as_i64vec3();
         let numbers = |i: usize| streams.iter().flat_map(move |s| (s.of(i as u32) / s.unseen).round().to_array());
@@ -111,17 +114,17 @@ impl Collapse {
         own
     }
 
-    /// How many triangles are left.
+    /// Returns the number of remaining triangles.
     pub fn left(&self) -> usize {
         self.left
     }
 
-    /// Three vertices of the mesh for each of them.
+    /// Returns the remaining triangles as vertex indices.
     pub fn indices(&self) -> Vec<u32> {
         self.triangles.iter().flatten().flatten().copied().collect()
     }
 
-    /// Collapses edges until `target` triangles are left; fewer where more would tear or fold the surface.
+    /// Collapses edges until `target` triangles are left; stops earlier if the surface would tear or fold.
     pub fn reduce(&mut self, target: usize) {
         let mut fans = [Fan::default(), Fan::default()];
         while self.left > target {
@@ -135,7 +138,7 @@ impl Collapse {
             let spoke = fan.spokes.iter().find(|spoke| spoke.rim == rim);
             match spoke.filter(|spoke| fan.stays_whole(spoke, other)) {
                 Some(spoke) => self.go(hub, spoke),
-                // What is about the other end has changed.
+                // The surroundings of the other end have changed.
                 None => {
                     self.consider(hub, &mut fans);
                     continue;
@@ -149,7 +152,7 @@ impl Collapse {
         }
     }
 
-    /// Moves a point to the other end of an edge.
+    /// Collapses an edge: moves a point to its other end.
     fn go(&mut self, hub: u32, edge: &Spoke) {
         let rim = edge.rim as usize;
         self.quadrics[rim] = self.quadrics[rim].plus(self.quadrics[hub as usize]);
@@ -177,7 +180,7 @@ impl Collapse {
         }
     }
 
-    /// Notes where a point changes least if it goes.
+    /// Adds the cheapest collapse of a point to the candidates.
     fn consider(&mut self, hub: u32, [fan, other]: &mut [Fan; 2]) {
         self.fill(hub, fan);
         let (here, mut best) = (self.positions[hub as usize], None);
@@ -196,7 +199,7 @@ impl Collapse {
         self.candidates.extend(best.map(|(cost, rim)| Reverse((cost, hub, rim, self.changed[hub as usize]))));
     }
 
-    /// The sum of squares of how far what a vertex has is displaced where it goes into another.
+    /// Returns the sum of squared attribute displacements if a vertex merges into another.
     fn shifted(&self, [from, to]: [u32; 2], there: DVec3) -> f64 {
         let numbers = |vertex: u32| vertex as usize * self.width..(vertex as usize + 1) * self.width;
         let pairs = self.shifts[numbers(from)].iter().zip(&self.shifts[numbers(to)]).zip(&self.values[numbers(to)]);
@@ -204,7 +207,7 @@ impl Collapse {
         pairs.fold(of_places, |sum, ((a, b), value)| sum + a.plus(*b).at(there, *value)).max(0.0)
     }
 
-    /// How what vertices have changes about each.
+    /// Computes the rate of change of attributes around each point.
     fn measure_values(&mut self, streams: &[Stream<'_>], radius_m: f64) {
         let Self { positions, values, width, of_values, shifts, .. } = self;
         let least = streams.iter().flat_map(|stream| {
@@ -224,10 +227,10 @@ impl Collapse {
         }
     }
 
-    /// Whether a triangle about a point turns too far when the point goes to `rim`, or becomes a splinter.
+    /// Returns true if moving the point to `rim` would rotate a triangle too far or make it a sliver.
     fn folds(&self, hub: u32, fan: &Fan, rim: u32) -> bool {
         let at = |vertex: u32| self.positions[vertex as usize];
-        // The triangle's normal, and its height over its longest side in times that side.
+        // Normal of the triangle, and the ratio of its height to its longest side.
         let shape = |[apex, next, last]: [DVec3; 3]| {
             let normal = (next - apex).cross(last - apex);
             let sides = [next - apex, last - apex, next - last].map(DVec3::length_squared);
@@ -243,7 +246,7 @@ impl Collapse {
         })
     }
 
-    /// The planes about a point: of its triangles, and upright on borders and seams.
+    /// Returns the quadric of a point: planes of its triangles, and perpendicular planes on borders and seams.
     fn planes(&self, hub: u32, fan: &mut Fan) -> Quadric {
         self.fill(hub, fan);
         let here = self.positions[hub as usize];

@@ -1,4 +1,4 @@
-//! How far a level of a mesh is from the mesh.
+//! Distance of a level of detail from its mesh.
 
 use super::super::order::Fans;
 use super::fan::MAX_CORNERS;
@@ -7,21 +7,21 @@ use super::tree::Tree;
 use crate::mesh::Mesh;
 use glam::{DVec3, Vec3, Vec4};
 
-/// Middles of edges that are looked at, at most: of more, every so many.
+/// Maximum number of edge midpoints that are sampled; of more edges, every n-th is.
 const MAX_EDGES: usize = 1 << 19;
 
-/// The largest distance between a mesh and triangles over its vertices, in meters, of what is looked at: vertices that are gone and
-/// middles of edges of the mesh, each by the triangle that is nearest to it. None if it is `most` or more.
+/// Returns the maximum distance in meters between a mesh and triangles over its vertices, or `None` if it reaches
+/// `most`. Samples are removed vertices and edge midpoints of the mesh, each compared with its nearest triangle.
 ///
-/// What vertices have beside their place counts as the distance that it is displaced by: how far it is to where the mesh, or the
-/// triangle, has what is drawn there. So of a texture, a highlight or the border between two colors nothing that is looked at is farther
-/// from where it was either; of triangles that meet in a seam the one counts in which it is less.
+/// Attribute differences count as the distance to the nearest place where the mesh or the triangle has the sample's
+/// attribute. No sampled texture, highlight or color border is thus displaced by more than the result. At a seam, the
+/// triangle with the smaller displacement counts.
 pub(super) fn deviation(mesh: &Mesh, indices: &[u32], streams: &[Stream<'_>], most: f32) -> Option<f32> {
     let corners: Vec<[u32; 3]> = indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
     let places: Vec<_> = corners.iter().map(|t| t.map(|vertex| mesh.positions[vertex as usize])).collect();
     let fans = Fans::new(&mesh.indices, mesh.vertex_count());
     let level = Level { mesh, fans, tree: Tree::new(&places), corners, places, streams };
-    // Vertices that nothing used have nothing to be displaced.
+    // Unused vertices are not compared.
     let mut gone = vec![false; mesh.vertex_count()];
     mesh.indices.iter().for_each(|vertex| gone[*vertex as usize] = true);
     indices.iter().for_each(|vertex| gone[*vertex as usize] = false);
@@ -43,10 +43,10 @@ pub(super) fn deviation(mesh: &Mesh, indices: &[u32], streams: &[Stream<'_>], mo
     Some(worst)
 }
 
-/// Triangles over a mesh's vertices.
+/// Triangles over the vertices of a mesh.
 struct Level<'a> {
     mesh: &'a Mesh,
-    /// The mesh's own triangles about each vertex.
+    /// Original triangles around each vertex.
     fans: Fans,
     corners: Vec<[u32; 3]>,
     places: Vec<[Vec3; 3]>,
@@ -57,8 +57,8 @@ struct Level<'a> {
 const SIDES: [(usize, usize); 3] = [(0, 1), (1, 2), (2, 0)];
 
 impl Level<'_> {
-    /// How far the middle between two vertices of the mesh is displaced: at most the first of `limits` if it is no more than that, and
-    /// the second if it is no less.
+    /// Returns the displacement of the midpoint of two vertices. Exits early: a result up to `limits[0]` or from
+    /// `limits[1]` is only a bound.
     fn off(&self, ends: [u32; 2], limits: [f32; 2], open: &mut Vec<u32>) -> f32 {
         let [a, b] = ends.map(|end| self.mesh.positions[end as usize]);
         let place = 0.5 * (a + b);
@@ -72,7 +72,8 @@ impl Level<'_> {
         })
     }
 
-    /// How far what a stream has is displaced at a place between two vertices, where a triangle is drawn.
+    /// Returns the distance by which an attribute is displaced at a place between two vertices, compared with a
+    /// triangle.
     fn shift(&self, stream: &Stream<'_>, (ends, place): ([u32; 2], Vec3), triangle: u32, shares: Vec3) -> f32 {
         let unit = |value: Vec4| if stream.unit { value.normalize_or_zero() } else { value };
         let values = self.corners[triangle as usize].map(|vertex| stream.of(vertex));
@@ -82,17 +83,18 @@ impl Level<'_> {
             return 0.0;
         }
         let length = |a: u32, b: u32| self.mesh.positions[a as usize].distance(self.mesh.positions[b as usize]);
-        // As far as the change along the edge itself takes it.
+        // Displacement along the edge itself, by the rate of change along it.
         let mut least = off * length(ends[0], ends[1]) / a.distance(b);
         if least.is_nan() {
             least = f32::INFINITY;
         }
-        // Within the triangle, if that changes as much.
+        // Displacement within the triangle, if the attribute changes that much there.
         let places = self.places[triangle as usize];
         for (a, b) in SIDES.into_iter().filter(|(a, b)| values[*a].distance(values[*b]) >= off) {
             least = least.min(off * places[a].distance(places[b]) / values[a].distance(values[b]));
         }
-        // About the ends, or some of what is about them: on an edge that changes as much, or as far as edges there change on the whole.
+        // Displacement around the ends: on an adjacent edge with enough change, or by the overall rate of change of
+        // adjacent edges.
         for end in ends {
             let (from, [mut changed, mut gone]) = (place.distance(self.mesh.positions[end as usize]), [0.0; 2]);
             let about = self.fans.of(end).iter().take(MAX_CORNERS);
@@ -112,12 +114,13 @@ impl Level<'_> {
     }
 }
 
-/// What is between three values by the shares of each.
+/// Interpolates three values with barycentric weights.
 fn weighted<T: std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>>([a, b, c]: [T; 3], shares: Vec3) -> T {
     a * shares.x + b * shares.y + c * shares.z
 }
 
-/// The shares of a triangle's corners in its place nearest to `place` (C. Ericson, "Real-Time Collision Detection", 2005, 5.1.5).
+/// Returns the barycentric coordinates of the triangle's point nearest to `place` (C. Ericson, "Real-Time Collision
+/// Detection", 2005, 5.1.5).
 fn nearest_shares(corners: [Vec3; 3], place: Vec3) -> Vec3 {
     let [a, b, c, place] = [corners[0], corners[1], corners[2], place].map(Vec3::as_dvec3);
     let (ab, ac) = (b - a, c - a);

@@ -1,17 +1,19 @@
-//! The triangles about a point of a surface, and the edges from it.
+//! Triangle fan around a point of a surface, and its edges.
 
-/// A point with more triangles about it, the tip of a cone, stays where it is, and nothing goes to it: its fan is left empty.
+/// Maximum number of triangles around a point. A point with more, such as the tip of a cone, is never collapsed: its
+/// fan is left empty.
 pub(super) const MAX_CORNERS: usize = 64;
 
 /// A triangle about a point: the vertex at the point, then the others in the order of the triangle.
 pub(super) type Corner = [u32; 3];
 
-/// An edge from a point.
+/// Edge from a point.
 #[derive(Clone, Copy)]
 pub(super) struct Spoke {
-    /// The point at its other end.
+    /// Point at the other end.
     pub rim: u32,
-    /// Its vertices in the triangle that goes from the point to the rim, and in the one that comes back: at the point, at the rim.
+    /// Vertices of the edge, at the point and at the rim, in the triangle that traverses it outward and in the one that
+    /// returns.
     sides: [Option<[u32; 2]>; 2],
 }
 
@@ -20,30 +22,31 @@ impl Spoke {
         self.sides.iter().any(Option::is_none)
     }
 
-    /// Whether the vertices at the point are others on both sides.
+    /// Returns true if the two sides of the edge use different vertices at the point.
     pub fn is_seam(&self) -> bool {
         matches!(self.sides, [Some(out), Some(back)] if out[0] != back[0])
     }
 
-    /// Into which vertex of the rim each vertex of the point goes when the point goes there: the triangles on both sides say.
+    /// Returns the pairs of vertices that merge if the point collapses to the rim, according to the triangles on both
+    /// sides.
     pub fn pairs(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
         self.sides.into_iter().flatten()
     }
 }
 
-/// A point of a surface with what is about it.
+/// A point of a surface with its adjacent triangles and edges.
 #[derive(Default)]
 pub(super) struct Fan {
     pub corners: Vec<Corner>,
     pub spokes: Vec<Spoke>,
-    /// The triangles are one fan, closed or open, with each edge once on either side.
+    /// True if the triangles form one fan, closed or open, with each edge once per side.
     whole: bool,
     borders: usize,
     seams: usize,
 }
 
 impl Fan {
-    /// Takes these corners of a point; `point` is that of a vertex.
+    /// Fills the fan with these corners of a point; `point` maps vertices to points.
     pub fn fill(&mut self, corners: impl Iterator<Item = Corner>, point: &[u32]) {
         let Self { corners: own, spokes, .. } = self;
         own.clear();
@@ -60,7 +63,7 @@ impl Fan {
                 self.whole &= spokes[at].sides[side].replace([hub, rim]).is_none();
             }
         }
-        // From edge to edge around: fans that meet in the point alone are not all gone through.
+        // Walks from edge to edge; fans that touch only at the point are not reached from each other.
         let open = spokes.iter().find(|spoke| spoke.sides[1].is_none());
         let start = open.or(spokes.first()).map(|spoke| spoke.rim);
         let (mut at, mut reached) = (start, 0);
@@ -74,8 +77,8 @@ impl Fan {
         self.seams = spokes.iter().filter(|spoke| spoke.is_seam()).count();
     }
 
-    /// Whether the point may go to the other end of an edge: of a border or a seam along it, and of what is whole anywhere, as
-    /// long as each vertex at the point has one to go into.
+    /// Returns true if the point may collapse to the other end of an edge. Points on a border or seam may only move
+    /// along it; inner points may move anywhere. Each vertex at the point needs one to merge into.
     pub fn may_go(&self, to: &Spoke) -> bool {
         let along = match (self.borders, self.seams) {
             (0, 0) => true,
@@ -90,8 +93,9 @@ impl Fan {
         along && self.whole && self.corners.iter().all(each_goes) && first.zip(second).is_none_or(to_one)
     }
 
-    /// Whether this point and the one at the other end of an edge, which is about `other`, have no neighbors in common but those of
-    /// the edge's own triangles: else the surface would touch itself where the edge was.
+    /// Returns true if this point and the other end of the edge share no neighbors except those of the edge's own
+    /// triangles. `other` is the fan of the other end. A collapse with further common neighbors would make the surface
+    /// touch itself.
     pub fn stays_whole(&self, edge: &Spoke, other: &Self) -> bool {
         let common = self.spokes.iter().filter(|own| other.spokes.iter().any(|theirs| theirs.rim == own.rim)).count();
         common == edge.pairs().count()

@@ -1,4 +1,4 @@
-//! Sums of squared distances: of places from planes, and of what vertices have from where triangles have it.
+//! Quadrics: sums of squared distances of positions from planes, and of attributes from their interpolation.
 
 use glam::{DMat3, DVec3};
 
@@ -12,10 +12,10 @@ pub(super) struct Quadric {
 }
 
 impl Quadric {
-    /// Of no planes.
+    /// Quadric of no planes.
     pub const NONE: Self = Self { a: DMat3::ZERO, b: DVec3::ZERO, c: 0.0 };
 
-    /// That of the plane through `point`, upright on the unit vector `normal`.
+    /// Returns the quadric of the plane through `point` with the unit normal `normal`.
     pub fn of_plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
         let (n, d) = (normal * weight, -normal.dot(point));
         Self { a: DMat3::from_cols(n * normal.x, n * normal.y, n * normal.z), b: n * d, c: weight * d * d }
@@ -25,28 +25,28 @@ impl Quadric {
         Self { a: self.a + other.a, b: self.b + other.b, c: self.c + other.c }
     }
 
-    /// The sum at `p`; rounding may leave it below 0.
+    /// Returns the sum at `p`; rounding may make it negative.
     pub fn at(&self, p: DVec3) -> f64 {
         p.dot(self.a * p) + 2.0 * self.b.dot(p) + self.c
     }
 }
 
-/// The same for a number that changes linearly over each of some triangles: squared distances by which a value at a place is from where
-/// the triangle has it.
+/// Quadric of an attribute that varies linearly over triangles: squared distances by which a value is displaced from
+/// its interpolated place.
 #[derive(Clone, Copy)]
 pub(super) struct Shift {
-    /// Sums of gradients, of values at the zero point, and of weights.
+    /// Sum of weighted gradients; sums of values at the origin and of weights follow.
     gradient: DVec3,
     zero: f64,
     weight: f64,
 }
 
 impl Shift {
-    /// Of no triangles.
+    /// Quadric of no triangles.
     pub const NONE: Self = Self { gradient: DVec3::ZERO, zero: 0.0, weight: 0.0 };
 
-    /// That of a triangle, and what it adds to the quadric of the places. Values that change by less than `least` a meter are taken to
-    /// change by that.
+    /// Returns the quadric of a triangle, and its contribution to the quadric of positions. Gradients below `least` per
+    /// meter count as `least`.
     pub fn of_triangle(corners: [DVec3; 3], values: [f64; 3], least: f64) -> (Self, Quadric) {
         let [a, b, c] = corners;
         let (normal, [second, third]) = ((b - a).cross(c - a), [values[1] - values[0], values[2] - values[0]]);
@@ -68,7 +68,7 @@ impl Shift {
         Self { gradient: self.gradient + other.gradient, zero: self.zero + other.zero, weight }
     }
 
-    /// The sum for `value` at `p`, but for what the quadric of the places has of it.
+    /// Returns the sum for `value` at `p`, without the share in the quadric of positions.
     pub fn at(&self, p: DVec3, value: f64) -> f64 {
         value * (self.weight * value - 2.0 * (self.gradient.dot(p) + self.zero))
     }

@@ -1,34 +1,34 @@
-//! What vertices have beside their places, as far as it is seen.
+//! Attributes of vertices that affect the image.
 
 use crate::mesh::Mesh;
 use glam::Vec4;
 
-/// Which of the optional streams of a mesh its materials read.
+/// Optional vertex streams that the materials of a mesh read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadStreams {
-    /// Tangents: where there are maps of normals, or grooves.
+    /// Tangents: read by normal maps and anisotropy.
     pub tangents: bool,
-    /// Of each set of texture coordinates how many texels there are from 0 to 1, of the finest texture that it is for; 0 where nothing
-    /// reads it.
+    /// Texels per unit of each set of texture coordinates, for the finest texture that uses it; 0 if nothing reads the
+    /// set.
     pub uv_texels: [f32; 2],
 }
 
-/// One number of every vertex or up to four.
+/// An attribute of up to four numbers per vertex.
 pub(super) struct Stream<'a> {
     of: Box<dyn Fn(usize) -> Vec4 + 'a>,
-    /// How many numbers count.
+    /// Number of relevant components.
     pub width: usize,
-    /// What differs by no more is the same.
+    /// Maximum difference that counts as equal.
     pub unseen: f32,
-    /// Whether what is between two is made of unit length.
+    /// True if interpolated values are normalized.
     pub unit: bool,
 }
 
-/// Of normals and tangents, in radians.
+/// Tolerance of normals and tangents, in radians.
 const SAME_DIRECTION: f32 = 1.0 / 256.0;
-/// Of texture coordinates, in texels.
+/// Tolerance of texture coordinates, in texels.
 const SAME_TEXELS: f32 = 1.0 / 8.0;
-/// Of colors, which are linear: less than half a code of 255 near black, where codes are finest.
+/// Tolerance of linear colors: less than half an 8-bit step near black, where steps are finest.
 const SAME_COLOR: f32 = 1.0 / 8192.0;
 
 impl Stream<'_> {
@@ -37,7 +37,7 @@ impl Stream<'_> {
     }
 }
 
-/// The streams of a mesh that are seen.
+/// Returns the streams of a mesh that affect the image.
 pub(super) fn streams(mesh: &Mesh, read: ReadStreams) -> Vec<Stream<'_>> {
     let mut all: Vec<Stream<'_>> = Vec::new();
     let normal = |i: usize| mesh.normals[i].extend(0.0);
@@ -45,7 +45,7 @@ pub(super) fn streams(mesh: &Mesh, read: ReadStreams) -> Vec<Stream<'_>> {
     if read.tangents && !mesh.tangents.is_empty() {
         let of = |i: usize| mesh.tangents[i].truncate().extend(0.0);
         all.push(Stream { of: Box::new(of), width: 3, unseen: SAME_DIRECTION, unit: true });
-        // The side that the bitangent is on is 1 or -1.
+        // The sign of the bitangent is 1 or −1.
         let side = |i: usize| Vec4::X * mesh.tangents[i].w;
         all.push(Stream { of: Box::new(side), width: 1, unseen: 0.5, unit: false });
     }

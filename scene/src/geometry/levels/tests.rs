@@ -11,15 +11,16 @@ fn triangles(level: &MeshLevel) -> usize {
     level.indices.len() / 3
 }
 
-/// A mesh that all triangles of a level make.
+/// Returns the mesh of a level's triangles.
 fn of(mesh: &Mesh, level: &MeshLevel) -> Mesh {
     Mesh { indices: level.indices.clone(), levels: Vec::new(), ..mesh.clone() }
 }
 
-/// How often each edge is gone along, by the places of its ends: once either way where a surface is closed.
+/// Counts the traversals of each edge by the positions of its ends; on a closed surface each edge is traversed once per
+/// direction.
 fn edges(mesh: &Mesh) -> BTreeMap<[[i64; 3]; 2], i32> {
     let mut found = BTreeMap::new();
-    // Poles and seams of what is turned round an axis are a rounding apart.
+    // Poles and seams of a surface of revolution differ by rounding.
     let place = |i: usize| (mesh.positions[i] * 1e5).round().as_i64vec3().to_array();
     for [a, b, c] in mesh.triangles().map(|triangle| triangle.map(place)) {
         [[a, b], [b, c], [c, a]].into_iter().for_each(|edge| *found.entry(edge).or_insert(0) += 1);
@@ -27,7 +28,8 @@ fn edges(mesh: &Mesh) -> BTreeMap<[[i64; 3]; 2], i32> {
     found
 }
 
-/// Closed surfaces stay closed, and fold nowhere; each level has about half the triangles of the one before, and errors rise.
+/// Closed surfaces stay closed and do not fold. Each level has about half the triangles of the previous one, and errors
+/// increase.
 #[test]
 fn closed_surfaces_stay_closed() {
     for (mesh, read) in
@@ -59,7 +61,8 @@ fn nearest_normal(mesh: &Mesh, at: Vec3) -> Vec3 {
     nearest.map_or(Vec3::ZERO, |i| mesh.normals[i])
 }
 
-/// The error that a level states against how far it is in truth from the ball, and what an even mesh of so many triangles would have.
+/// Compares the error of a level with its actual distance from the ball, and with that of a uniform mesh of as many
+/// triangles.
 #[test]
 fn a_ball_is_as_near_as_is_said() {
     let mesh = sphere(1.0, 64, 32);
@@ -67,9 +70,9 @@ fn a_ball_is_as_near_as_is_said() {
     let whole = farthest_from_ball(&mesh);
     for level in &levels {
         let (off, count) = (farthest_from_ball(&of(&mesh, level)), triangles(level) as f32);
-        // The mesh is off the ball itself, and what lies between the places that are looked at may be a little farther.
+        // The mesh itself deviates from the ball, and places between the samples may deviate slightly more.
         assert!(off <= 1.1 * level.error_m + whole, "{count}: {off} of {}", level.error_m);
-        // Of equal triangles: an edge of √(4 A / √3), whose corners are on a circle of a radius of that over √3.
+        // Equal triangles have edges of √(4 A / √3), and a circumradius of the edge over √3.
         let even = 4.0 * std::f32::consts::PI / count * 4.0 / 3.0_f32.sqrt() / 6.0;
         assert!(level.error_m < 5.0 * even, "{count}: {} of {even}", level.error_m);
     }
@@ -84,7 +87,7 @@ fn farthest_from_ball(mesh: &Mesh) -> f32 {
     mesh.triangles().map(depth).fold(0.0, f32::max)
 }
 
-/// What is flat takes hardly any triangles, and its border stays where it is.
+/// Flat ground needs few triangles and keeps its border.
 #[test]
 fn flat_ground_keeps_its_border() {
     let mesh = plane(Vec2::new(4.0, 2.0), 24, Vec2::ONE);
@@ -104,7 +107,8 @@ fn flat_ground_keeps_its_border() {
     }
 }
 
-/// A texture that is bent, colors or normals on flat ground: what a level states of them against what is found at the mesh's vertices.
+/// Distorted texture coordinates, colors or normals on flat ground: compares the error of a level with displacements at
+/// the mesh's vertices.
 #[test]
 fn what_vertices_have_is_displaced_no_farther_than_is_said() {
     let flat = plane(Vec2::splat(2.0), 32, Vec2::ONE);
@@ -133,7 +137,7 @@ fn what_vertices_have_is_displaced_no_farther_than_is_said() {
                     |r: f32| (0..8).map(move |i| Vec3::new((0.8 * i as f32).cos(), 0.0, (0.8 * i as f32).sin()) * r);
                 let about = [0.5, 1.0].into_iter().flat_map(|share| ring(share * level.error_m));
                 let least = about.map(off).fold(off(Vec3::ZERO), f32::min);
-                // What colors change, 4 in a meter, between the places that are tried.
+                // Change of colors, 4 per meter, between the sampled places.
                 assert!(least < 0.06, "{name}: {least} at the least within {} m", level.error_m);
                 here = here.max(off(Vec3::ZERO));
             }
@@ -146,7 +150,7 @@ fn what_vertices_have_is_displaced_no_farther_than_is_said() {
     assert!(coarsest(&flat, PAINTED) < 1e-5, "it is not bent");
 }
 
-/// What the level of flat ground has at a place, by the triangle that it is in.
+/// Evaluates the level of flat ground at a place, in the triangle that contains it.
 fn at(mesh: &Mesh, level: &MeshLevel, place: Vec3, of: impl Fn(&Mesh, usize) -> Vec4) -> Vec4 {
     let shares = |t: &[u32]| {
         let [a, b, c] = [0, 1, 2].map(|i| mesh.positions[t[i] as usize]);
@@ -159,7 +163,7 @@ fn at(mesh: &Mesh, level: &MeshLevel, place: Vec3, of: impl Fn(&Mesh, usize) -> 
     shares.into_iter().zip(triangle).map(|(share, i)| share * of(mesh, *i as usize)).sum()
 }
 
-/// The texture of one half begins anew in the middle, where vertices are double: no triangle has corners of both.
+/// The texture restarts in the middle, where vertices are duplicated; no triangle has corners of both halves.
 #[test]
 fn seams_stay() {
     let half = plane(Vec2::ONE, 24, Vec2::ONE);
@@ -175,12 +179,12 @@ fn seams_stay() {
     assert!(triangles(last) < 64 && last.error_m < 1e-5, "{} {}", triangles(last), last.error_m);
     let mixed = last.indices.chunks_exact(3).filter(|t| t.iter().any(|i| *i < count) && t.iter().any(|i| *i >= count));
     assert_eq!(mixed.count(), 0);
-    // With no texture read the halves are one.
+    // If no texture is read, the halves are merged.
     assert!(triangles(levels_of_detail(&mesh, BARE).last().expect("levels")) <= triangles(last));
 }
 
-/// A face of a meter with an edge that is bevelled by a tenth of a millimeter: where the bevel is left out the face is shaded otherwise
-/// all over, and not by the width of the bevel.
+/// A face of 1 m with an edge beveled by 0.1 mm. Without the bevel the shading of the whole face changes, so the error
+/// must not be just the width of the bevel.
 #[test]
 fn a_bevel_that_is_left_out_counts_for_the_face() {
     let place = |x: f32, y: f32| Vec3::new(x, y, 0.0);
@@ -208,7 +212,8 @@ fn a_bevel_that_is_left_out_counts_for_the_face() {
     assert_eq!(off(&[0, 4, 5, 0, 5, 3], 0.2), None);
 }
 
-/// Where tangents turn to the other side, as about the middle of a mirrored texture, vertices are double, and no triangle has both.
+/// Vertices are duplicated at places of opposite bitangents, as in the middle of a mirrored texture. No triangle has
+/// corners of both sides.
 #[test]
 fn the_sides_of_bitangents_are_kept_apart() {
     let mut mesh = plane(Vec2::splat(2.0), 24, Vec2::ONE);
@@ -227,7 +232,7 @@ fn the_sides_of_bitangents_are_kept_apart() {
     }
 }
 
-/// Leaves of which half could go without any that stays being elsewhere.
+/// Leaves, half of which could be removed without displacing the others.
 #[test]
 fn leaves_do_not_go_one_by_one() {
     let mut tree = Mesh::default();
@@ -242,7 +247,7 @@ fn leaves_do_not_go_one_by_one() {
     assert_eq!(levels_of_detail(&tree, BARE), []);
 }
 
-/// The tip of a cone has more triangles about it than are looked through: it stays, and all else is as quick as elsewhere.
+/// The tip of a cone has more triangles than the limit: it is kept, and the rest is simplified at normal speed.
 #[test]
 fn a_tip_of_many_triangles_stays() {
     let count = 1_000_u32;
@@ -266,7 +271,7 @@ fn few_triangles_and_what_moves_have_no_levels() {
     assert_eq!(levels_of_detail(&Mesh::default(), PAINTED), []);
     let moves = Some(Box::new(crate::moves::Moves::default()));
     assert_eq!(levels_of_detail(&Mesh { moves, ..sphere(1.0, 48, 24) }, BARE), []);
-    // A heap of triangles that share nothing.
+    // Many triangles without shared vertices.
     let mut heap = Mesh::default();
     for i in 0..600_u32 {
         let at = Vec3::new((i % 20) as f32, (i / 20 % 20) as f32, (i / 400) as f32);

@@ -1,27 +1,27 @@
-//! Triangles in a tree of boxes, to find those near a place.
+//! Tree of triangle boxes for nearest-triangle queries.
 
 use glam::Vec3;
 
-/// Triangles in a leaf, at most.
+/// Maximum number of triangles in a leaf.
 const LEAF: usize = 4;
 
-/// A box around some triangles that follow each other in [`Tree::order`], and where its second half begins among the nodes.
+/// Box around consecutive triangles of [`Tree::order`], and the node at which its second half begins.
 struct Node {
     low: Vec3,
     high: Vec3,
     triangles: std::ops::Range<u32>,
-    /// The node after the first half's; 0 of a leaf.
+    /// Node of the second half; 0 for a leaf.
     second: u32,
 }
 
-/// Boxes in boxes, each cut in two across its longest side.
+/// Bounding volume hierarchy; each box is split across its longest side.
 pub(super) struct Tree {
     nodes: Vec<Node>,
     order: Vec<u32>,
 }
 
 impl Tree {
-    /// Of triangles with these corners.
+    /// Builds the tree over triangles with these corners.
     pub fn new(corners: &[[Vec3; 3]]) -> Self {
         let mut own = Self { nodes: Vec::new(), order: (0..corners.len() as u32).collect() };
         let mut order = std::mem::take(&mut own.order);
@@ -50,8 +50,8 @@ impl Tree {
         self.cut(right, first + middle as u32, corners);
     }
 
-    /// The least that `of` makes of a triangle, which is no less than how far it is from `place`: the first of `limits`, or less, where it
-    /// is no more than that, and the second where it is no less. `open` is room to work in.
+    /// Returns the minimum of `of` over all triangles, where `of` is at least the triangle's distance from `place`.
+    /// Exits early: a result up to `limits[0]` or from `limits[1]` is only a bound. `open` is scratch memory.
     pub fn least(
         &self,
         place: Vec3,
@@ -75,7 +75,7 @@ impl Tree {
             }
             let halves = [at + 1, node.second];
             let [first, second] = halves.map(|half| away(&self.nodes[half as usize]));
-            // The nearer half is looked at first.
+            // Visits the nearer half first.
             open.extend(if first < second { [halves[1], halves[0]] } else { halves });
         }
         best
@@ -86,7 +86,7 @@ impl Tree {
 mod tests {
     use super::*;
 
-    /// Against all of them.
+    /// Compares with a linear search.
     #[test]
     fn the_least_is_found() {
         let number = |i: u32| ((i.wrapping_mul(2_654_435_761) >> 8) % 1000) as f32 / 1000.0;

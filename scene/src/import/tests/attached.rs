@@ -1,4 +1,4 @@
-//! Lights and cameras on nodes that move.
+//! Lights and cameras on moving nodes.
 
 use glam::{DVec3, Vec3};
 use serde_json::json;
@@ -9,8 +9,8 @@ use crate::light::LightKind;
 
 const QUARTER: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
-/// A parent that moves along x and turns about y by 90° in a second. Below it a point light 1 above, a spot 2 above, a sun,
-/// and a camera 3 above; a light that stays.
+/// A parent that moves along x and rotates about y by 90° in a second. Below it are a point light 1 above, a spot light
+/// 2 above, a sun, and a camera 3 above; another light is static.
 fn carousel() -> Fixture {
     let mut fixture = Fixture::triangle();
     let light = |index: usize| json!({"KHR_lights_punctual": {"light": index}});
@@ -51,7 +51,7 @@ fn near(a: DVec3, b: DVec3) {
     assert!((a - b).length() < 1e-6, "{a} {b}");
 }
 
-/// A quarter turn about y leads −z to −x. Angles of f32 quaternions are right to 1e-7.
+/// A quarter turn about y maps −z to −x. Angles of f32 quaternions are accurate to 1e-7.
 fn check_moved(scene: &Scene, moved: f64, forward: Vec3) {
     let along = |a: Vec3| assert!((a - forward).length() < 1e-6, "{a} {forward}");
     near(light(scene, "bulb", DVec3::ZERO).position, DVec3::new(moved, 1.0, 0.0));
@@ -80,7 +80,7 @@ fn lights_and_cameras_move_with_their_nodes() {
     assert_eq!((&scene.lights, &scene.cameras), (&rest.lights, &rest.cameras));
 }
 
-/// Programs drop lights of a scene, and add their own, which no node moves.
+/// Applications remove lights of a scene and add their own, which no node moves.
 #[test]
 fn lights_that_are_left_still_move() {
     let mut scene = carousel().load().expect("it is sound");

@@ -1,4 +1,4 @@
-//! Files under `tests/files/cases`, which other importers often refuse. Their README says what is right.
+//! Files under `tests/files/cases`, which other importers often reject. Their README describes the correct result.
 
 use std::path::Path;
 
@@ -22,10 +22,10 @@ fn loaded((name, bytes): (&str, &[u8])) -> Scene {
     scene
 }
 
-/// Position, normal and texture coordinates of a corner in ten-thousandths.
+/// Position, normal and texture coordinates of a corner, in units of 1e-4.
 type Corner = [i64; 8];
 
-/// All triangles in world axes, each from its first corner on, in an order of their own. `moved` changes positions.
+/// Returns all triangles in world axes, rotated to start at their smallest corner, and sorted. `moved` maps positions.
 fn triangles(scene: &Scene, moved: impl Fn(DVec3, DVec3) -> DVec3) -> Vec<[Corner; 3]> {
     let mut all = Vec::new();
     for instance in &scene.instances {
@@ -37,7 +37,7 @@ fn triangles(scene: &Scene, moved: impl Fn(DVec3, DVec3) -> DVec3) -> Vec<[Corne
             let position = moved(world.transform_point3(mesh.positions[vertex].as_dvec3()), normal);
             let uv = mesh.uv0[vertex].as_dvec2();
             let numbers = [position.x, position.y, position.z, normal.x, normal.y, normal.z, uv.x, uv.y];
-            // Whole numbers forgive the rounding of f32, 1e-7, and no fault that shows.
+            // Rounding to units of 1e-4 hides f32 rounding (1e-7), but no visible fault.
             numbers.map(|number| (number * 1e4).round() as i64)
         };
         for triangle in mesh.indices.chunks(3) {
@@ -89,7 +89,7 @@ fn files_that_equal_the_plain_box() {
     }
 }
 
-/// The joint of the +x face is 0.4 beside its bind pose; the first set of weights of the second file is 0 there.
+/// The joint of the +x face is 0.4 away from its bind pose; in the second file the first set of weights is 0 there.
 #[test]
 fn skins_move_the_face_of_the_box() {
     let base = loaded(BASE);

@@ -1,5 +1,5 @@
-//! Skinned and morphed characters, compared at five times with an implementation of the specification's formulas in plain
-//! f64 arrays that shares nothing with the crate.
+//! Skinned and morphed characters, compared at five times with a separate implementation of the specification's
+//! formulas in f64 arrays.
 
 mod math;
 mod model;
@@ -17,7 +17,7 @@ use crate::{LoadOptions, Scene};
 use glam::{DMat3, DVec3};
 
 fn loaded(character: &Character) -> Scene {
-    // In the order of the file, so that vertices can be told apart.
+    // Keeps the file order, so that vertices can be identified.
     let options = LoadOptions { keep_order: true, ..LoadOptions::default() };
     let bytes = character.file().glb();
     let scene = load_bytes_with(FilePath::new("c.glb"), &bytes, &options, &mut silent).expect("it is sound");
@@ -25,11 +25,12 @@ fn loaded(character: &Character) -> Scene {
     scene
 }
 
-/// The largest difference of positions, as a share of the shape's size, and of normals, at rest and at all times.
+/// Returns the largest differences of positions, relative to the size of the shape, and of normals, at rest and at all
+/// times.
 ///
-/// The crate computes in f64 and stores f32 relative to the first joint. A position is off by 2⁻²⁴ of its distance from
-/// there on each axis, and by as much for each weight. The tests allow forty times that, 2.4e-6, of positions, and 1e-5
-/// of normals, which stretching may magnify.
+/// The crate computes in f64 and stores f32 relative to the first joint. The error of a position is 2⁻²⁴ of its
+/// distance from there per axis, and as much for each weight. The tests allow forty times that, 2.4e-6, for positions,
+/// and 1e-5 for normals, which stretching may magnify.
 fn differences(character: &Character) -> [f64; 2] {
     let mut scene = loaded(character);
     let mut largest = [0.0_f64; 2];
@@ -73,7 +74,7 @@ fn compare(character: &Character) {
     assert!(positions < 2.4e-6 && normals < 1e-5, "{positions:e} {normals:e}");
 }
 
-/// A biped with its skin, drawn with one set of weights, animated.
+/// An animated biped with a skin, drawn with one set of weights.
 fn plain_biped() -> Character {
     let mut noise = Noise(1);
     let mut character = Character::default();
@@ -90,13 +91,13 @@ fn plain_biped() -> Character {
 fn a_biped_whose_bind_pose_is_not_its_rest_pose() {
     let character = plain_biped();
     compare(&character);
-    // The test would notice if the animation or the bind pose did nothing.
+    // Ensures that the animation and the bind pose have an effect.
     let first = |time| oracle::posed(&character, time)[0].positions[0];
     assert!(length(&minus(first(None), first(Some(1.0)))) > 0.01);
     assert!(length(&minus(first(None), character.shapes[0].positions[0])) > 0.01);
 }
 
-/// One inverse bind matrix off by a millimeter, one normal by a degree: neither may pass.
+/// One inverse bind matrix is off by a millimeter, one normal by a degree: neither may pass.
 #[test]
 fn the_comparison_notices_a_millimeter() {
     let truth = plain_biped();
@@ -116,7 +117,7 @@ fn the_comparison_notices_a_millimeter() {
     };
     assert!(off(&wrong) < 1e-5);
     assert!(off(&truth) > 1e-4, "{}", off(&truth));
-    // Channels that are compared with others fail, too.
+    // Channels that are compared with each other fail too.
     let mut other = truth.clone();
     other.channels[1].values[5] += 0.1;
     let mut scene = loaded(&other);
@@ -125,8 +126,8 @@ fn the_comparison_notices_a_millimeter() {
     assert!(length(&minus(place.to_array(), posed(&truth)[0].positions[0])) > 1e-4);
 }
 
-/// Blender's FBX export: a node of scale 0.01, turned by −90° about x, with joints in centimeters below it. The mesh's node
-/// is its child or its sibling, and has a transform of its own.
+/// Blender's FBX export: joints in centimeters below a node of scale 0.01, rotated by −90° about x. The mesh's node is
+/// its child or its sibling, and has a transform.
 #[test]
 fn a_biped_below_an_armature_in_centimeters() {
     for is_child in [true, false] {
@@ -137,7 +138,7 @@ fn a_biped_below_an_armature_in_centimeters() {
         character.nodes.push(Node { parent: None, local: Local::Parts(parts.0, parts.1, parts.2) });
         let joints = biped(&mut noise, 100.0);
         let nodes = joints.add(&mut character, Some(0));
-        // The mesh in meters, with y up: modelled where the armature puts it.
+        // The mesh in meters, with y up, where the armature places it.
         let (to_mesh, to_joints) = if is_child {
             (IDENTITY, IDENTITY)
         } else {
@@ -154,7 +155,7 @@ fn a_biped_below_an_armature_in_centimeters() {
     }
 }
 
-/// Two sets of weights, as floats, bytes and 16-bit integers, with joints in 8 and 16 bits.
+/// Two sets of weights, as floats, bytes and 16-bit integers, with 8-bit and 16-bit joints.
 #[test]
 fn eight_influences_in_every_encoding() {
     for weights in [Code::F32, Code::U8, Code::U16] {
@@ -167,7 +168,7 @@ fn eight_influences_in_every_encoding() {
         draw(&mut character, shape, Some(skin), None, at_origin());
         animate(&mut noise, &mut character, &nodes);
         compare(&character);
-        // The second set counts.
+        // The second set must have an effect.
         let mut without = character.clone();
         without.shapes[0].influences.pop();
         let place = |character: &Character| oracle::posed(character, Some(1.0))[0].positions[3];
@@ -175,7 +176,7 @@ fn eight_influences_in_every_encoding() {
     }
 }
 
-/// Targets are added before joints move the vertex; with weights at rest and animated in each way.
+/// Targets are added before joints move the vertex, with weights at rest and with each interpolation.
 #[test]
 fn morph_targets_with_normals_below_a_skin_and_without_one() {
     for (way, code) in [(Way::Step, Code::F32), (Way::Linear, Code::U8), (Way::Cubic, Code::F32)] {
@@ -199,7 +200,7 @@ fn morph_targets_with_normals_below_a_skin_and_without_one() {
     }
 }
 
-/// Two meshes share a skin; another skin has some of its joints in another order with binds of its own.
+/// Two meshes share a skin; another skin has some of its joints in another order with other binds.
 #[test]
 fn meshes_share_skins_and_skins_share_joints() {
     let mut noise = Noise(5);
@@ -214,7 +215,7 @@ fn meshes_share_skins_and_skins_share_joints() {
         character.drawn.last_mut().expect("it was added").skin = Some(0);
     }
     character.skins.push(skin);
-    // Five joints from the end, bound 0.3 m aside; the mesh numbers them anew.
+    // Five joints from the end, bound with an offset of 0.3 m and renumbered.
     let aside: Matrix = of_parts([rounded(0.3), 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [1.0; 3]);
     let binds = joints.inverse_bind(&aside);
     let few: Vec<usize> = (6..11).rev().collect();
@@ -226,7 +227,7 @@ fn meshes_share_skins_and_skins_share_joints() {
         skeleton: None,
     };
     draw(&mut character, own, Some(skin), None, at_origin());
-    // The same shape once more, by another node with another skin.
+    // The same shape again, on another node with another skin.
     character.nodes.push(Node { parent: None, local: at_origin() });
     let node = character.nodes.len() - 1;
     character.drawn.push(Drawn { node, shape: 2, skin: Some(0) });
@@ -242,7 +243,7 @@ fn a_chain_of_three_hundred_joints() {
     let nodes = joints.add(&mut character, None);
     let skin = Skin { joints: nodes.clone(), inverse_bind: Some(joints.inverse_bind(&IDENTITY)), skeleton: None };
     let mut shape = shape(&mut noise, &joints, &IDENTITY, 1.0, 1, Code::F32);
-    // A vertex here and there is enough, the last joints among them.
+    // A subset of vertices is enough, including the last joints.
     let keep = |vertex: &usize| vertex % 60 < 3 || *vertex >= 1794;
     let kept: Vec<usize> = (0..1800).filter(keep).collect();
     shape.positions = kept.iter().map(|vertex| shape.positions[*vertex]).collect();
@@ -252,7 +253,7 @@ fn a_chain_of_three_hundred_joints() {
     set.weights = kept.iter().map(|vertex| set.weights[*vertex]).collect();
     assert!(set.joints.iter().flatten().any(|joint| *joint > 290));
     draw(&mut character, shape, Some(skin), None, at_origin());
-    // Scales of 300 joints would multiply.
+    // Scales of 300 joints would accumulate.
     character.nodes.iter_mut().for_each(|node| {
         if let Local::Parts(t, r, _) = node.local {
             node.local = Local::Parts(t, r, [1.0; 3]);
@@ -263,7 +264,7 @@ fn a_chain_of_three_hundred_joints() {
     compare(&character);
 }
 
-/// Joints below a node with a matrix, in a hierarchy that the default scene lacks, with `skeleton`, animated there.
+/// Joints below a node with a matrix, in an animated hierarchy outside of the default scene, with `skeleton`.
 #[test]
 fn joints_outside_of_the_scene_and_a_skeleton_root() {
     let mut noise = Noise(7);
@@ -287,7 +288,7 @@ fn joints_outside_of_the_scene_and_a_skeleton_root() {
     compare_with_warning(&character);
 }
 
-/// [`compare`] of a character whose file is warned of.
+/// Runs [`compare`] for a character whose file causes warnings.
 fn compare_with_warning(character: &Character) {
     let mut inside = character.clone();
     inside.outside.clear();
@@ -303,7 +304,7 @@ fn compare_with_warning(character: &Character) {
     }
 }
 
-/// A node's own weights count, not those of its mesh.
+/// A node's own weights override those of its mesh.
 #[test]
 fn weights_of_a_node_replace_those_of_its_mesh() {
     let mut noise = Noise(10);
@@ -319,7 +320,8 @@ fn weights_of_a_node_replace_those_of_its_mesh() {
     compare(&character);
 }
 
-/// Without inverse bind matrices joints move vertices from where they are; far from the origin nothing gets coarse.
+/// Without inverse bind matrices, joints transform vertices from their positions; precision is kept far from the
+/// origin.
 #[test]
 fn without_inverse_bind_matrices_and_far_away() {
     let mut noise = Noise(8);
@@ -334,7 +336,7 @@ fn without_inverse_bind_matrices_and_far_away() {
     compare(&character);
 }
 
-/// A negative scale above the joints turns the character inside out: triangles wind clockwise, as of any mirrored node.
+/// A negative scale above the joints mirrors the character: triangles wind clockwise, as for any mirrored node.
 #[test]
 fn a_mirrored_armature_mirrors_the_instance() {
     let mut noise = Noise(9);
@@ -351,7 +353,7 @@ fn a_mirrored_armature_mirrors_the_instance() {
     compare(&character);
 }
 
-/// Two primitives of one skinned mesh with equal geometry and different materials: both follow the joints.
+/// Two primitives of a skinned mesh with equal geometry and different materials both follow the joints.
 #[test]
 fn primitives_with_equal_geometry_both_follow_the_joints() {
     let character = plain_biped();
@@ -367,14 +369,14 @@ fn primitives_with_equal_geometry_both_follow_the_joints() {
     assert_eq!(first.world_from_model, second.world_from_model);
 }
 
-/// The oracle itself, on numbers known beforehand.
+/// Checks the oracle itself on known values.
 #[test]
 fn the_oracle_knows_its_mathematics() {
     let quarter = turn([0.0, 0.0, 1.0], std::f64::consts::FRAC_PI_2);
     let matrix = of_parts([1.0, 2.0, 3.0], quarter, [2.0, 3.0, 4.0]);
     let close = |a: Vector, b: Vector| assert!(length(&minus(a, b)) < 1e-12, "{a:?} {b:?}");
     close(math::point(&matrix, [1.0, 1.0, 1.0]), [-2.0, 4.0, 7.0]);
-    // The plane x + y = 0 of the cube stretched by 2 and 3: its normal is (1/2, 1/3), then turned.
+    // The plane x + y = 0 of the cube stretched by 2 and 3: its normal is (1/2, 1/3) before rotation.
     close(math::normal(&matrix, [1.0, 1.0, 0.0]), math::unit([-1.0 / 3.0, 0.5, 0.0]));
     let same = product(&matrix, &math::inverse(&matrix));
     assert!(same.as_flattened().iter().zip(IDENTITY.as_flattened()).all(|(a, b)| (a - b).abs() < 1e-12));

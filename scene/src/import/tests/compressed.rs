@@ -1,5 +1,5 @@
-//! One torus and one strip under every compression of geometry (`tests/assets/compressed`): what is decoded is compared with the
-//! uncompressed files, within the error of the encoder's settings. Damaged files give errors.
+//! One torus and one strip under every geometry compression (`tests/assets/compressed`). Decoded data is compared with
+//! the uncompressed files, within the error of the encoder's settings. Damaged files return errors.
 
 mod damage;
 mod errors;
@@ -14,13 +14,13 @@ use crate::progress::silent;
 use crate::test_files::file;
 use crate::{LoadOptions, Scene};
 
-/// The bytes of a file of `tests/assets/compressed`.
+/// Returns the bytes of a file in `tests/assets/compressed`.
 fn bytes(name: &str) -> Vec<u8> {
     let path = file(&format!("assets/compressed/{name}.glb")).expect("it is committed");
     std::fs::read(path).expect("it can be read")
 }
 
-/// A file of `tests/assets/compressed`, to be changed.
+/// Returns a file in `tests/assets/compressed`, to be modified.
 fn fixture(name: &str) -> Fixture {
     Fixture::of_glb(&bytes(name))
 }

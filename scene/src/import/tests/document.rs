@@ -32,13 +32,13 @@ fn broken_containers_say_what_is_wrong() {
     };
     assert!(patched(4, 1).contains("glTF version \"1.0\" is not supported"));
     assert!(patched(4, 3).contains("version 3"));
-    // Less than the header itself: the crate's reader subtracts without looking.
+    // Less than the header itself; the reader of the `gltf` crate subtracts without a check.
     assert!(patched(8, 3).contains("truncated"));
     assert!(patched(12, 0xffff_fff0).contains("a chunk promises"));
     assert!(patched(16, 0x004e_4942).contains("not JSON"));
 }
 
-/// Every prefix of a file is an error, none a panic.
+/// Every prefix of a file returns an error, without a panic.
 #[test]
 fn every_truncation_is_an_error() {
     let good = Fixture::triangle().glb();
@@ -60,7 +60,7 @@ fn required_extensions_are_named_and_versions_checked() {
     assert!(fixture.error().contains("\"1.0\""));
 }
 
-/// Three levels, a matrix among them; far from the origin the sum is done in f64.
+/// Three levels, one of them a matrix; far from the origin transforms are accumulated in f64.
 #[test]
 fn transforms_accumulate_along_the_hierarchy() {
     let mut fixture = Fixture::triangle();
@@ -106,13 +106,13 @@ fn cycles_and_shared_children_are_errors() {
     broken(json!([{"matrix": [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]), "last row");
     let big = json!([1e30, 1.0, 1.0]);
     broken(json!([{"mesh": 0, "scale": big, "name": "n"}]), "node 0 \"n\": its mesh reaches 1.000e30 m");
-    // A chain whose product leaves f64.
+    // A chain whose product overflows f64.
     let mut chain: Vec<_> = (0..12).map(|i| json!({"scale": [1e38, 1e38, 1e38], "children": [i + 1]})).collect();
     chain.push(json!({"mesh": 0}));
     broken(json!(chain), "overflows");
 }
 
-/// A chain as deep as a stack would not survive.
+/// A chain deep enough to overflow the stack under recursion.
 #[test]
 fn deep_hierarchies_do_not_recurse() {
     let mut fixture = Fixture::triangle();
@@ -123,8 +123,8 @@ fn deep_hierarchies_do_not_recurse() {
     assert_eq!(fixture.load().expect("deep, but good").instances.len(), 1);
 }
 
-/// A file with an external buffer and an image under percent-encoded names, and every stage
-/// reported; stopping at any report is an error that says so.
+/// A file with an external buffer and an image under percent-encoded names. Every stage is reported; stopping at any
+/// report returns the matching error.
 #[test]
 fn external_files_progress_and_interruption() {
     let folder = std::env::temp_dir().join(format!("scene import {}", std::process::id()));
@@ -180,7 +180,7 @@ fn external_files_progress_and_interruption() {
     std::fs::remove_dir_all(&folder).expect("the folder is ours");
 }
 
-/// Sixteen images of one file, and as many of one buffer view, are two pictures; the budget counts them so.
+/// Sixteen images of one file, and as many of one buffer view, are decoded as two images and charged as such.
 #[test]
 fn an_image_with_one_source_is_decoded_once() {
     let folder = std::env::temp_dir().join(format!("scene-shared-{}", std::process::id()));
@@ -211,7 +211,7 @@ fn an_image_with_one_source_is_decoded_once() {
     let left = (1 << 20) - texels;
     assert!(options.memory.keep(left).is_err(), "vertices are counted, too");
     assert!(options.memory.keep(left - 2000).is_ok(), "files and working memory are given back");
-    // Room for the file and the pictures, but not for vertices beside them: nothing is decoded, and nothing stays taken.
+    // Enough for the file and the images, but not for vertices: nothing is decoded, and nothing stays charged.
     let bytes = texels + fixture.glb().len() as u64;
     let small = LoadOptions { memory: Memory::new(bytes).into(), ..LoadOptions::default() };
     let error = load_with(&file, &small, &mut silent).map(drop).expect_err("no room").to_string();

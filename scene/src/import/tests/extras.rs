@@ -8,7 +8,7 @@ use super::fixture::Fixture;
 use crate::material::{AlphaMode, Lobe, Lobes, Material, Subsurface};
 use crate::{Scene, SunHalo};
 
-/// A triangle whose material has these extensions and extras.
+/// Loads a triangle whose material has these extensions and extras.
 fn load(extensions: Value, extras: Value) -> Scene {
     let mut fixture = Fixture::triangle();
     fixture.push("materials", json!({"extensions": extensions, "extras": extras}));

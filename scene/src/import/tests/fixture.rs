@@ -1,4 +1,4 @@
-//! Small glTF files made in code.
+//! Small generated glTF files.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub(super) struct Fixture {
 }
 
 impl Fixture {
-    /// A document with one node that shows mesh 0, which has no primitives yet.
+    /// Returns a document with one node that draws mesh 0, which has no primitives yet.
     pub fn new() -> Self {
         Self {
             json: json!({
@@ -37,14 +37,14 @@ impl Fixture {
         }
     }
 
-    /// A binary file, to be changed.
+    /// Parses a binary file, to be modified.
     pub fn of_glb(bytes: &[u8]) -> Self {
         let parts = split(Path::new("fixture.glb"), bytes).expect("a GLB");
         let json = serde_json::from_slice(parts.json).expect("JSON");
         Self { json, bin: parts.blob.unwrap_or_default().into() }
     }
 
-    /// One triangle in the plane z = 0, with normals, and material 0 unset.
+    /// Returns one triangle in the plane z = 0, with normals and an unset material 0.
     pub fn triangle() -> Self {
         let mut fixture = Self::new();
         let position = fixture.floats(3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
@@ -87,7 +87,7 @@ impl Fixture {
         self.json["meshes"][0]["primitives"].as_array_mut().expect("the fixture has a mesh").push(primitive);
     }
 
-    /// Appends to a top-level array, which is made if need be; returns the index.
+    /// Appends to a top-level array, created if needed; returns the index.
     pub fn push(&mut self, array: &str, value: Value) -> usize {
         if self.json[array].is_null() {
             self.json[array] = json!([]);
@@ -97,7 +97,7 @@ impl Fixture {
         array.len() - 1
     }
 
-    /// The value at a JSON pointer, made if it is missing.
+    /// Sets the value at a JSON pointer, created if missing.
     pub fn set(&mut self, pointer: &str, value: Value) -> &mut Self {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer begins with /");
         let parent = self.json.pointer_mut(parent).expect(pointer);
@@ -108,7 +108,7 @@ impl Fixture {
         self
     }
 
-    /// The file as GLB.
+    /// Returns the file as GLB.
     pub fn glb(&self) -> Vec<u8> {
         let mut document = self.json.clone();
         if document["buffers"] == json!([]) {
@@ -131,7 +131,7 @@ impl Fixture {
         bytes
     }
 
-    /// The file as text, its buffer as a data URI.
+    /// Returns the file as text, its buffer as a data URI.
     pub fn gltf(&self) -> Vec<u8> {
         let mut document = self.json.clone();
         let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&self.bin));
@@ -139,19 +139,19 @@ impl Fixture {
         document.to_string().into_bytes()
     }
 
-    /// Loads the GLB form; a scene that comes back is checked.
+    /// Loads the GLB form and checks a returned scene.
     pub fn load(&self) -> Result<Scene, SceneError> {
         let scene = load_bytes(Path::new("dir/fixture.glb"), &self.glb(), &mut silent)?;
         assert_eq!(scene.check(), Ok(()));
         Ok(scene)
     }
 
-    /// The warnings of a successful load, a line each.
+    /// Returns the warnings of a successful load, one per line.
     pub fn warnings(&self) -> String {
         self.load().expect("the file loads").warnings.join("\n")
     }
 
-    /// The message with which loading fails.
+    /// Returns the error message of a failing load.
     pub fn error(&self) -> String {
         let text = self.load().expect_err("the file is broken").to_string();
         assert!(text.starts_with("dir/fixture.glb: "), "{text}");
@@ -160,7 +160,7 @@ impl Fixture {
     }
 }
 
-/// A PNG of `width` × `height` texels of one RGBA color.
+/// Returns a PNG of `width` × `height` texels of one RGBA color.
 pub(super) fn png(width: u32, height: u32, texel: [u8; 4]) -> Vec<u8> {
     let image = image::RgbaImage::from_pixel(width, height, image::Rgba(texel));
     let mut bytes = std::io::Cursor::new(Vec::new());

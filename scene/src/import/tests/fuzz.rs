@@ -1,4 +1,4 @@
-//! Thousands of damaged files: a scene that keeps its promises or one line, never a panic.
+//! Thousands of damaged files: each loads as a valid scene or returns one line, without a panic.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::fixture::{Fixture, png};
 use crate::import::load_bytes;
 use crate::progress::silent;
 
-/// A file that uses as much of the importer as fits in a few kilobytes.
+/// Returns a file of a few kilobytes that uses most of the importer.
 fn rich() -> Fixture {
     let mut f = Fixture::new();
     let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.5];
@@ -67,7 +67,7 @@ fn rich() -> Fixture {
     f
 }
 
-/// A fixed sequence, so that a failure can be repeated (Knuth's MMIX generator).
+/// Deterministic random numbers, for reproducible failures (Knuth's MMIX generator).
 struct Random(u64);
 
 impl Random {
@@ -92,7 +92,7 @@ fn survive(bytes: &[u8], what: &str) -> bool {
     }
 }
 
-/// Bytes set at random, anywhere in a GLB.
+/// Random bytes anywhere in a GLB.
 #[test]
 fn random_bytes_never_panic() {
     let good = rich().glb();
@@ -116,11 +116,11 @@ fn random_bytes_never_panic() {
             refused += 1;
         }
     }
-    // Both outcomes must occur, or the damage is too heavy or too light to test anything.
+    // Both outcomes must occur; otherwise the damage is too heavy or too light.
     assert!(loaded > 100 && refused > 1000, "{loaded} loaded, {refused} refused");
 }
 
-/// Digits of the JSON replaced by other digits: structure stays, every number goes wrong.
+/// Replaces JSON digits by other digits: the structure stays, every number changes.
 #[test]
 fn random_numbers_in_the_json_never_panic() {
     let fixture = rich();
@@ -134,7 +134,7 @@ fn random_numbers_in_the_json_never_panic() {
             bytes[digits[random.below(digits.len())]] = b'0' + random.below(10) as u8;
         }
         let text = String::from_utf8(bytes).expect("digits are ASCII");
-        // Leading zeros are not JSON; such rounds test nothing here.
+        // Leading zeros are not JSON; such rounds test nothing.
         let Ok(json) = serde_json::from_str(&text) else {
             continue;
         };
@@ -148,7 +148,7 @@ fn random_numbers_in_the_json_never_panic() {
     assert!(loaded > 300 && refused > 300, "{loaded} loaded, {refused} refused");
 }
 
-/// Whole values of the JSON replaced by hostile ones, one at a time, exhaustively.
+/// Replaces each JSON value by hostile ones, one at a time, exhaustively.
 #[test]
 fn every_value_replaced_by_hostile_ones_never_panics() {
     let fixture = rich();
@@ -186,7 +186,7 @@ fn every_value_replaced_by_hostile_ones_never_panics() {
     assert!(loaded > 100, "{loaded} loaded");
 }
 
-/// The JSON pointers of every value below `value`.
+/// Collects the JSON pointers of every value below `value`.
 fn collect(value: &serde_json::Value, at: String, pointers: &mut Vec<String>) {
     if let Some(object) = value.as_object() {
         for (key, child) in object {

@@ -39,8 +39,8 @@ fn every_index_type_and_none_at_all() {
     assert_eq!(fixture.load().expect("a good file").meshes[0].indices, [0, 1, 2]);
 }
 
-/// A strip of squares with its triangles in a scattered order: drawn in another one, unless the file's is asked for or shows, and then
-/// with vertices that are used in their order.
+/// A strip of squares with scattered triangles is reordered, with vertices in order of use, unless file order is
+/// requested or visible.
 #[test]
 fn triangles_are_ordered_where_their_order_does_not_show() {
     let squares = 40_u16;
@@ -87,7 +87,7 @@ fn triangles_are_ordered_where_their_order_does_not_show() {
     }
 }
 
-/// A square as list, strip and fan: the same two triangles up to rotation, the same winding.
+/// A square as list, strip and fan gives the same two triangles up to rotation, with the same winding.
 #[test]
 fn strips_and_fans_face_the_same_way_as_lists() {
     let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0];
@@ -100,13 +100,13 @@ fn strips_and_fans_face_the_same_way_as_lists() {
         let scene = fixture.load().expect("a good file");
         let mesh = &scene.meshes[0];
         assert_eq!(mesh.triangle_count(), 2, "mode {mode}");
-        // Flat normals were computed, so they tell the winding.
+        // The computed flat normals reveal the winding.
         assert!(mesh.normals.iter().all(|n| *n == Vec3::Z), "mode {mode}");
         assert_eq!(mesh.vertex_count(), 4, "coplanar corners stay shared");
     }
 }
 
-/// A sparse accessor over a base and over nothing, and a plain one over nothing: zeros.
+/// A sparse accessor with and without a base, and a non-sparse one without data: zeros.
 #[test]
 fn sparse_accessors_replace_elements() {
     for with_base in [true, false] {
@@ -158,8 +158,8 @@ fn integer_components_and_strides() {
     assert_eq!(mesh.colors, [Vec4::new(1.0, 0.0, 0.2, 1.0); 3]);
 }
 
-/// A material with a normal map makes tangents; the same geometry without one does not, and two
-/// primitives of equal geometry share a mesh.
+/// A material with a normal map generates tangents; the same geometry without one does not. Two primitives of equal
+/// geometry share a mesh.
 #[test]
 fn tangents_are_made_where_a_normal_map_needs_them() {
     let mut fixture = Fixture::triangle();
@@ -177,10 +177,10 @@ fn tangents_are_made_where_a_normal_map_needs_them() {
     }
     let scene = fixture.load().expect("a good file");
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    // The first primitive has no material; it and the two of material 1 share one mesh.
+    // The first primitive has no material; it and the two with material 1 share a mesh.
     assert_eq!((scene.meshes.len(), scene.instances.len()), (2, 4));
     assert!(scene.meshes[0].tangents.is_empty());
-    // u grows along +x, v against +y: the bitangent, against growing v, is +y.
+    // u increases along +x, v along −y: the bitangent, against increasing v, is +y.
     assert_eq!(scene.meshes[1].tangents, [Vec4::new(1.0, 0.0, 0.0, 1.0); 3]);
     assert_eq!(scene.materials[1].normal_scale, 0.5);
 }
@@ -197,7 +197,7 @@ fn given_tangents_are_kept_and_repaired() {
     assert!(scene.warnings[0].contains("1 unusable tangents"), "{:?}", scene.warnings);
 }
 
-/// Triangles without area carry no flat normal.
+/// Degenerate triangles have no flat normal.
 #[test]
 fn flat_normals_leave_out_triangles_without_area() {
     let mut fixture = Fixture::new();

@@ -1,4 +1,4 @@
-//! Files that break one rule each: one line that names the place and the reason.
+//! Files that violate one rule each: the one-line error contains the place and the reason.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::fixture::{Fixture, png};
 use crate::{LoadOptions, Memory};
 
-/// Sets one value of the good triangle and expects a message with all `words`.
+/// Sets one value of the valid triangle and expects a message with all `words`.
 #[track_caller]
 fn broken(pointer: &str, value: Value, words: &[&str]) {
     let mut fixture = Fixture::triangle();
@@ -23,7 +23,7 @@ fn indices_out_of_range() {
     let primitive = "/meshes/0/primitives/0";
     let at = |rest: &str| format!("{primitive}{rest}");
     let position = at("/attributes/POSITION");
-    // The crate's own validation panics on this one.
+    // The validation of the `gltf` crate panics on this one.
     broken(&position, json!(99), &["mesh 0 primitive 0 POSITION", "accessor 99", "are 3"]);
     broken(&at("/attributes/NORMAL"), json!(99), &["NORMAL", "names accessor 99"]);
     broken(&at("/indices"), json!(7), &["mesh 0 primitive 0 indices", "accessor 7"]);
@@ -49,7 +49,7 @@ fn ranges_that_exceed_their_bytes() {
     broken("/bufferViews/0/byteStride", json!(1_000_000), &["exceed buffer view 0"]);
     broken("/bufferViews/0/byteStride", json!(usize::MAX), &["exceed buffer view 0"]);
     broken("/buffers", json!([{"byteLength": 1_000_000}]), &["buffer 0: truncated"]);
-    // A buffer without bytes reads as zeros, within the length that it states and within the memory.
+    // A buffer without bytes reads as zeros, up to its stated length and the memory budget.
     let absent = |bytes: u64| {
         let mut fixture = Fixture::triangle();
         fixture.set("/bufferViews/1/buffer", json!(1));
@@ -63,7 +63,7 @@ fn ranges_that_exceed_their_bytes() {
     assert!(absent(1 << 60).error().contains("buffer 1: "));
 }
 
-/// Counts without bytes behind them must not be believed.
+/// Counts without bytes must not cause allocations.
 #[test]
 fn allocation_bombs() {
     let over = ["over the limit of 268435456"];
@@ -71,10 +71,10 @@ fn allocation_bombs() {
     broken("/accessors/0/count", json!(1_u64 << 40), &over);
     broken("/accessors/0/count", json!(0), &["no elements"]);
     let mut fixture = Fixture::triangle();
-    // No buffer view, so the elements are zeros, as many as the file likes.
+    // Without a buffer view the elements are zeros, in any number.
     fixture.json["accessors"][0] = json!({"componentType": 5126, "type": "VEC3", "count": 1_u64 << 40});
     assert!(fixture.error().contains("over the limit of 268435456"));
-    // Many meshes of few bytes each, all over the same large view.
+    // Many meshes of a few bytes each, all over the same large view.
     let options = LoadOptions { memory: Memory::new(100).into(), ..LoadOptions::default() };
     let file = std::path::Path::new("x");
     let document = crate::import::document::parse(file, br#"{"asset": {"version": "2.0"}}"#).expect("a document");
@@ -83,7 +83,7 @@ fn allocation_bombs() {
     let error = source.charge(1).expect_err("the budget is spent").to_string();
     assert!(error.contains("x: vertices: ") && error.contains("0.0 MiB are left"), "{error}");
     assert!(source.charge(u64::MAX).is_err());
-    // A load that fails gives back what it took.
+    // A failed load releases its memory.
     drop(source);
     assert!(options.memory.keep(100).is_ok());
 }
@@ -206,7 +206,7 @@ fn broken_materials_and_images() {
     );
     with(
         &|f| {
-            // A header that promises 2^31 − 1 texels a side.
+            // A header that claims 2^31 − 1 texels a side.
             let mut bytes = png(2, 2, [9; 4]);
             bytes[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
             let view = f.view(&bytes);

@@ -1,4 +1,4 @@
-//! Files with everything that moves, damaged: a scene that can be posed or one line, never a panic.
+//! Damaged files with all kinds of motion: each loads and can be posed, or returns one line, without a panic.
 
 use std::path::Path;
 
@@ -8,7 +8,8 @@ use super::fixture::{Fixture, png};
 use crate::import::load_bytes;
 use crate::progress::silent;
 
-/// A skinned and morphed triangle, instances, a light, a camera, variants, both material models, and an animation of all.
+/// Returns a skinned and morphed triangle with instances, a light, a camera, variants, both material models, and an
+/// animation of all.
 fn rich() -> Fixture {
     let mut f = Fixture::triangle();
     let joints = f.array(&[0, 1, 0, 1].repeat(3), 5121, "VEC4", 3);
@@ -82,7 +83,7 @@ fn rich() -> Fixture {
     f
 }
 
-/// Loads a file and poses it; returns whether both are possible.
+/// Loads a file and poses it; returns true if both succeed.
 fn survive(fixture: &Fixture, what: &str) -> bool {
     let mut scene = match load_bytes(Path::new("fuzz.glb"), &fixture.glb(), &mut silent) {
         Ok(scene) => scene,
@@ -130,7 +131,7 @@ fn every_value_replaced_by_hostile_ones_never_panics() {
     assert!(survived > 300 && survived < pointers.len() * hostile.len() - 300, "{survived}");
 }
 
-/// Floats of every array replaced by what no array should hold.
+/// Replaces the floats of every array by invalid values.
 #[test]
 fn every_array_filled_with_hostile_numbers_never_panics() {
     let fixture = rich();
@@ -148,7 +149,7 @@ fn every_array_filled_with_hostile_numbers_never_panics() {
     }
 }
 
-/// The JSON pointers of every value below `value`.
+/// Collects the JSON pointers of every value below `value`.
 fn collect(value: &Value, at: String, pointers: &mut Vec<String>) {
     let children: Vec<(String, &Value)> = match value {
         Value::Object(members) => members.iter().map(|(key, child)| (key.clone(), child)).collect(),

@@ -9,7 +9,7 @@ use super::fixture::{Fixture, png};
 use crate::import::load;
 use crate::progress::silent;
 
-/// A folder of its own, removed at the end.
+/// A temporary folder, removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -23,7 +23,7 @@ impl Folder {
         fs::write(self.0.join("scene").join(path), bytes).expect("the folder is ours");
     }
 
-    /// Returns the error of a scene that names an image, or a buffer.
+    /// Returns the error of a scene that refers to an image or a buffer.
     fn error(&self, image: Option<&str>, buffer: Option<&str>) -> String {
         let mut fixture = Fixture::triangle();
         let uv = fixture.floats(2, &[0.0; 6]);
@@ -46,7 +46,7 @@ impl Drop for Folder {
     }
 }
 
-/// Returns whether the file system of a folder tells letter case apart.
+/// Returns true if the file system of a folder is case-sensitive.
 fn tells_case_apart(folder: &Path) -> bool {
     fs::write(folder.join("case"), "").expect("the folder is ours");
     !folder.join("CASE").exists()
@@ -66,14 +66,14 @@ fn a_missing_file_names_the_one_with_other_letters() {
     let start =
         format!("{}: image 0: {}: cannot be read: ", scene.join("a.gltf").display(), scene.join("Wood.PNG").display());
     assert!(error.starts_with(&start) && error.ends_with(&suffix("wood.png")), "{error}");
-    // Letters beyond ASCII, percent-encoded; each part of a path, and parts that lead up again.
+    // Percent-encoded non-ASCII letters, in each part of a path, also with `..` parts.
     for uri in ["tex/%C3%BCberzug.png", "Tex/%C3%9Cberzug.PNG", "TEX/überZUG.png", "./tex/../TEX/überzug.png"] {
         let error = folder.error(Some(uri), None);
         assert!(error.ends_with(&suffix("tex/Überzug.PNG")), "{uri}: {error}");
     }
     let error = folder.error(None, Some("DATA.bin"));
     assert!(error.contains(": buffer 0: ") && error.ends_with(&suffix("data.bin")), "{error}");
-    // The first of several names counts.
+    // The first of several names is used.
     folder.write("WOOD.png", &[]);
     assert!(folder.error(Some("Wood.PNG"), None).ends_with(&suffix("WOOD.png")));
 }
@@ -86,7 +86,7 @@ fn names_that_are_not_alike_and_places_outside_are_not_named() {
     fs::create_dir_all(folder.0.join("scene/Stone.PNG")).expect("the folder is ours");
     #[cfg(unix)]
     std::os::unix::fs::symlink("../secret.png", folder.0.join("scene/link.png")).expect("the folder is ours");
-    // Another name, a folder, a link that leads out.
+    // Another name, a folder, and a link to the outside.
     for uri in ["wood.jpg", "wool.png", "stone.png", "no/wood.png", "LINK.png"] {
         let error = folder.error(Some(uri), None);
         assert!(!error.contains("differ in case") && error.contains("image 0"), "{uri}: {error}");

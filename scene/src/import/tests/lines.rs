@@ -1,4 +1,4 @@
-//! Lines and points: modes, counts, and the materials that they are shaded with.
+//! Lines and points: modes, counts, and materials.
 
 use glam::{DVec3, Vec3, Vec4};
 use serde_json::{Value, json};
@@ -7,14 +7,14 @@ use super::fixture::{Fixture, png};
 use crate::mesh::Topology;
 use crate::{AlphaMode, Material, Scene};
 
-/// Four vertices in the plane z = 0, drawn in `mode`: by `indices`, or in their order.
+/// Returns four vertices in the plane z = 0, drawn in `mode`: by `indices`, or in order.
 fn drawn(mode: u32, indices: Option<&[u16]>, more: &[(&str, usize)]) -> Fixture {
     let mut fixture = Fixture::new();
     let position = fixture.floats(3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
     let mut primitive = json!({"attributes": {"POSITION": position}, "mode": mode});
     for (name, width) in more {
         let unit: Vec<f32> = (0..*width).map(|i| if i == *width - 1 { 1.0 } else { 0.0 }).collect();
-        // A normal along z; a tangent along x with a side.
+        // A normal along z; a tangent along x with a sign.
         let values = if *width == 4 { vec![1.0, 0.0, 0.0, 1.0] } else { unit };
         primitive["attributes"][name] = json!(fixture.floats(*width, &values.repeat(4)));
     }
@@ -29,7 +29,7 @@ fn loaded(fixture: &Fixture) -> Scene {
     fixture.load().expect("a good file")
 }
 
-/// Section 3.7.2.1: which vertices each mode joins, with and without indices.
+/// Section 3.7.2.1: vertices joined by each mode, with and without indices.
 #[test]
 fn every_mode_becomes_a_list() {
     let (points, lines) = (Topology::Points, Topology::Lines);
@@ -65,7 +65,7 @@ fn primitives_of_too_few_vertices_are_left_out_with_a_warning() {
     assert_eq!(loaded(&odd).meshes[0].indices, [0, 1]);
 }
 
-/// A material with everything that section 3.9.7 decides about.
+/// Returns a material with every property that section 3.9.7 affects.
 fn with_material(mut fixture: Fixture, extensions: &Value) -> Material {
     let image = fixture.view(&png(1, 1, [128, 128, 255, 255]));
     fixture.push("images", json!({"bufferView": image, "mimeType": "image/png"}));
@@ -85,7 +85,7 @@ fn with_material(mut fixture: Fixture, extensions: &Value) -> Material {
     scene.materials[scene.instances[0].material.index()].clone()
 }
 
-/// Section 3.9.7: without normals base color and emission, without tangents no normal map, and with both all of it.
+/// Section 3.9.7: without normals base color and emission, without tangents no normal map, and with both everything.
 #[test]
 fn streams_decide_how_lines_and_points_are_lit() {
     let coat = json!({"KHR_materials_clearcoat": {"clearcoatFactor": 1.0, "clearcoatNormalTexture": {"index": 0}}});
@@ -99,13 +99,13 @@ fn streams_decide_how_lines_and_points_are_lit() {
         assert!(lit.normal_texture.is_none() && lit.clear_coat.is_some_and(|coat| coat.normal_texture.is_none()));
         let mapped = with_material(drawn(mode, None, &[("NORMAL", 3), ("TANGENT", 4)]), &coat);
         assert!(mapped.normal_texture.is_some() && mapped.clear_coat.is_some_and(|coat| coat.normal_texture.is_some()));
-        // KHR_materials_unlit shows the base color alone.
+        // KHR_materials_unlit shows only the base color.
         let unlit = with_material(drawn(mode, None, &[]), &json!({"KHR_materials_unlit": {}}));
         assert!(unlit.unlit && unlit.emissive == Vec3::ZERO, "{unlit:?}");
     }
 }
 
-/// Triangles of the same material keep it, and lines of equal streams share one form of it.
+/// Triangles keep the material, and lines of equal streams share a variant of it.
 #[test]
 fn forms_of_materials_are_made_once() {
     let mut fixture = drawn(1, None, &[]);
@@ -127,7 +127,7 @@ fn forms_of_materials_are_made_once() {
     assert_eq!(scene.materials.len(), 2);
 }
 
-/// Joints move lines and points as they move triangles, with normals and without.
+/// Joints move lines and points like triangles, with and without normals.
 #[test]
 fn skins_move_lines_and_points() {
     for (mode, streams) in [(0, &[][..]), (1, &[]), (3, &[("NORMAL", 3)])] {
@@ -140,7 +140,7 @@ fn skins_move_lines_and_points() {
         fixture.set("/nodes/0/skin", json!(0));
         fixture.push("nodes", json!({"translation": [0.0, 0.0, 5.0], "scale": [2.0, 2.0, 2.0]}));
         fixture.set("/scenes/0/nodes", json!([0, 1]));
-        // Loading poses the scene at rest.
+        // Loading applies the rest pose.
         let scene = loaded(&fixture);
         assert_eq!(scene.motion.bodies.len(), 1, "mode {mode}");
         let bounds = scene.instances[0].bounds;

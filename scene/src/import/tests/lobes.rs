@@ -12,7 +12,7 @@ use crate::material::{
 use crate::texture::{TextureRole, TextureSlot, UvTransform};
 use crate::{Scene, TextureId};
 
-/// A triangle whose material has these extensions, with one image.
+/// Returns a triangle whose material has these extensions, with one image.
 fn with_extensions(extensions: Value) -> Fixture {
     let mut fixture = Fixture::triangle();
     let uv = fixture.floats(2, &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
@@ -27,7 +27,7 @@ fn with_extensions(extensions: Value) -> Fixture {
     fixture
 }
 
-/// Texture 0 with a transform that tells the slots apart.
+/// Returns texture 0 with a transform that identifies the slot.
 fn texture(x: f32) -> Value {
     json!({"index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": {"offset": [x, 0.0]}}})
 }
@@ -42,7 +42,7 @@ fn one(lobe: Lobe) -> Lobes {
     Lobes::NONE.with(lobe)
 }
 
-/// The only material of a file that loads without warnings.
+/// Returns the only material of a file that loads without warnings.
 fn load(extensions: Value) -> (Scene, Material) {
     let scene = with_extensions(extensions).load().expect("a good file");
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
@@ -98,7 +98,7 @@ fn anisotropy() {
     let texture = slot(&scene, 1.0, TextureRole::Linear);
     assert_eq!(material.anisotropy, Some(Anisotropy { strength: 0.5, rotation_rad: 2.0, texture }));
     assert_eq!(material.lobes(), one(Lobe::Anisotropy));
-    // The direction counts from the tangent, so there must be tangents.
+    // The direction is relative to the tangent, so tangents are needed.
     assert_eq!(material.tangent_uv_set(), Some(1));
     assert_eq!(scene.meshes[0].tangents.len(), 3);
     let (_, plain) = load(json!({"KHR_materials_anisotropy": {"anisotropyStrength": 1.0}}));
@@ -126,7 +126,7 @@ fn transmission_and_its_volume() {
     assert_eq!(material.transmission, Some(Transmission { factor: 0.75, texture, volume: Some(volume) }));
     assert_eq!(material.lobes(), one(Lobe::Transmission));
 
-    // A thin wall: no volume, or one without thickness.
+    // Thin-walled: no volume, or zero thickness.
     let wall = |extra: Value| {
         let mut extensions = json!({"KHR_materials_transmission": {"transmissionFactor": 1.0}});
         extensions["KHR_materials_volume"] = extra;
@@ -223,7 +223,7 @@ fn diffuse_transmission() {
     assert_eq!((material.lobes(), material.volume()), (one(Lobe::DiffuseTransmission), volume));
     let (_, plain) = load(json!({"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1.0}}));
     assert_eq!(plain.diffuse_transmission, Some(DiffuseTransmission::default()));
-    // Both ways through share the body.
+    // Both kinds of transmission share the volume.
     let (_, both) = load(json!({
         "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1.0},
         "KHR_materials_transmission": {"transmissionFactor": 0.5},
@@ -234,7 +234,7 @@ fn diffuse_transmission() {
     assert_eq!(both.diffuse_transmission.map(|t| t.volume), Some(body));
 }
 
-/// A factor of zero switches a lobe off, and with it its textures; unlit surfaces have none.
+/// A factor of zero disables a lobe and its textures; unlit materials have no lobes.
 #[test]
 fn lobes_that_do_not_show_are_left_out() {
     let (scene, material) = load(json!({
@@ -301,22 +301,22 @@ fn broken_lobes_are_errors() {
         json!({"KHR_materials_transmission": {"transmissionFactor": 1.0}, "KHR_materials_volume": volume})
     };
     for (extensions, words) in [
-        (json!({"KHR_materials_sheen": 3}), "KHR_materials_sheen: it is no object"),
-        (coat("clearcoatFactor", json!("much")), "KHR_materials_clearcoat: its clearcoatFactor is no number"),
+        (json!({"KHR_materials_sheen": 3}), "KHR_materials_sheen: it is not an object"),
+        (coat("clearcoatFactor", json!("much")), "KHR_materials_clearcoat: its clearcoatFactor is not a number"),
         (coat("clearcoatFactor", json!(1e300)), "its clearcoatFactor is inf"),
         (coat("clearcoatTexture", json!({})), "its clearcoatTexture has no index"),
         (coat("clearcoatTexture", json!([])), "its clearcoatTexture has no index"),
         (coat("clearcoatTexture", json!({"index": -1})), "its clearcoatTexture has no index"),
         (coat("clearcoatTexture", json!({"index": 7})), "names texture 7, but there are 1"),
         (coat("clearcoatTexture", json!({"index": 0, "texCoord": 0.5})), "no valid texCoord"),
-        (coat("clearcoatNormalTexture", json!({"index": 0, "scale": null})), "scale is no number"),
+        (coat("clearcoatNormalTexture", json!({"index": 0, "scale": null})), "scale is not a number"),
         (json!({"KHR_materials_sheen": {"sheenColorFactor": [1, 1]}}), "sheenColorFactor is not 3 numbers"),
-        (json!({"KHR_materials_sheen": {"sheenColorFactor": [1, 1, "x"]}}), "sheenColorFactor is no number"),
+        (json!({"KHR_materials_sheen": {"sheenColorFactor": [1, 1, "x"]}}), "sheenColorFactor is not a number"),
         (json!({"KHR_materials_anisotropy": {"anisotropyRotation": 1e39}}), "its anisotropyRotation is inf"),
-        (json!({"KHR_materials_iridescence": []}), "KHR_materials_iridescence: it is no object"),
-        (json!({"KHR_materials_iridescence": {"iridescenceIor": "x"}}), "its iridescenceIor is no number"),
+        (json!({"KHR_materials_iridescence": []}), "KHR_materials_iridescence: it is not an object"),
+        (json!({"KHR_materials_iridescence": {"iridescenceIor": "x"}}), "its iridescenceIor is not a number"),
         (json!({"KHR_materials_dispersion": {"dispersion": 1e300}}), "its dispersion is inf"),
-        (json!({"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": []}}), "Factor is no number"),
+        (json!({"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": []}}), "Factor is not a number"),
         (volume("thicknessFactor", json!(-1.0)), "KHR_materials_volume: its thicknessFactor is -1"),
         (volume("attenuationDistance", json!(0.0)), "its attenuationDistance is 0"),
         (

@@ -1,4 +1,4 @@
-//! Documents that are valid by the specification though few parsers read them, and containers with common faults.
+//! Documents that are valid but rejected by many parsers, and containers with common faults.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ fn error(bytes: &[u8]) -> String {
     load(bytes).expect_err("it is broken").to_string()
 }
 
-/// The text of a triangle, with every whole number written by `form`.
+/// Returns the text of a triangle, with every integer formatted by `form`.
 fn with_numbers(form: fn(u64) -> String) -> String {
     let mut fixture = Fixture::triangle();
     let wide = fixture.floats(4, &[0.25; 12]);
@@ -41,7 +41,7 @@ fn written(json: &Value, form: fn(u64) -> String) -> String {
     }
 }
 
-/// JSON Schema: a number without a fraction is an integer, however it is written.
+/// JSON Schema: a number without a fractional part is an integer in any notation.
 #[test]
 fn integers_may_be_written_as_floats_everywhere() {
     let truth = load(with_numbers(|n| n.to_string()).as_bytes()).expect("it is plain");
@@ -78,7 +78,7 @@ fn fractions_and_huge_numbers_are_no_counts() {
     assert!(fixture.error().contains("accessor"), "{}", fixture.error());
 }
 
-/// `extras` hold anything, at any depth of the document, and are not read.
+/// `extras` may hold anything, anywhere in the document, and are ignored.
 #[test]
 fn extras_are_ignored() {
     let truth = Fixture::triangle().load().expect("it is plain");
@@ -97,7 +97,7 @@ fn extras_are_ignored() {
     }
 }
 
-/// Materials alone have extras that are read, and what is wrong there is a warning.
+/// Only extras of materials are read here, and errors in them are warnings.
 #[test]
 fn extras_of_materials_say_how_triangles_are_put_in_order() {
     use crate::material::TransparencyMode;
@@ -147,7 +147,7 @@ fn every_form_of_gltf_1_is_named() {
         let error = error(text);
         assert!(error.starts_with("x.gltf: glTF version \"1.0\" is not supported"), "{error}");
     }
-    // Dictionaries alone do not make a document of version 2 old.
+    // Dictionaries alone do not make a version 2 document an old one.
     let odd = error(br#"{"asset": {"version": "2.0"}, "nodes": {}}"#);
     assert!(odd.contains("JSON: nodes: ") && !odd.contains("1.0"), "{odd}");
 }
@@ -167,10 +167,10 @@ fn errors_carry_the_path_in_the_json() {
         assert!(error.contains(&format!("JSON: {path}")), "{path}: {error}");
     }
     assert!(error(b"{}").contains("JSON: missing field `asset`"), "{}", error(b"{}"));
-    assert!(error(b"[]").contains("JSON: it is no object"), "{}", error(b"[]"));
+    assert!(error(b"[]").contains("JSON: it is not an object"), "{}", error(b"[]"));
 }
 
-/// A GLB file of these chunks, each behind the other without padding.
+/// Returns a GLB file of these chunks without padding.
 fn container(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     let mut bytes = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
     for (kind, body) in chunks {
@@ -183,7 +183,7 @@ fn container(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     bytes
 }
 
-/// The JSON of a triangle, `extra` bytes longer than a multiple of four, and its buffer.
+/// Returns the JSON of a triangle, `extra` bytes longer than a multiple of four, and its buffer.
 fn parts(extra: usize) -> (Vec<u8>, Vec<u8>) {
     let mut fixture = Fixture::triangle();
     fixture.json["buffers"] = json!([{"byteLength": fixture.bin.len()}]);
@@ -210,7 +210,7 @@ fn chunks_without_padding_are_read_with_a_warning() {
             // Also with a header that states the shorter length.
             if length >= 12 {
                 short[8..12].copy_from_slice(&(length as u32).to_le_bytes());
-                // Padding alone behind the JSON: the buffer is absent, and zeros are read from it, with a warning.
+                // Only padding follows the JSON: the buffer is absent and reads as zeros, with a warning.
                 if (20 + json.len()..=20 + json.len().next_multiple_of(4)).contains(&length) {
                     continue;
                 }
@@ -226,7 +226,7 @@ fn json_may_be_padded_with_zeros() {
     for zeros in [1, 3, 4, 9] {
         let (mut json, bin) = parts(0);
         json.resize(json.len() + zeros, 0);
-        // Padding inside the chunk; what is missing to a multiple of four is space.
+        // Padding inside the chunk; the rest up to a multiple of four is spaces.
         json.resize(json.len().next_multiple_of(4), 0);
         let bytes = container(&[(b"JSON", &json), (b"BIN\0", &bin)]);
         let scene = load(&bytes).expect("it is read");

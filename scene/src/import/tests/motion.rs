@@ -1,4 +1,4 @@
-//! Animations, skins and morph targets of files made in code, with numbers known beforehand.
+//! Animations, skins and morph targets of generated files, with known results.
 
 use super::fixture::Fixture;
 use crate::Scene;
@@ -7,7 +7,7 @@ use serde_json::json;
 
 const QUARTER: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
-/// A triangle on a node that hangs on another; animation 0 moves the parent along x and turns the child about z.
+/// A triangle on a child node; animation 0 moves the parent along x and rotates the child about z.
 fn hierarchy() -> Fixture {
     let mut fixture = Fixture::triangle();
     fixture.set("/scenes/0/nodes", json!([1]));
@@ -39,7 +39,7 @@ fn posed(fixture: &Fixture, time_s: f64) -> Scene {
 fn nodes_move_with_their_parents() {
     let fixture = hierarchy();
     assert_eq!(loaded(&fixture).motion.animations[0].duration_s(), 3.0);
-    // A corner of the triangle at (1, 0, 0), moved halfway and turned by 45°, and at the end by 90°.
+    // A corner of the triangle at (1, 0, 0), moved halfway and rotated by 45°, and at the end by 90°.
     let half = std::f64::consts::FRAC_1_SQRT_2;
     for (time_s, place) in [(0.0, [1.0, 5.0]), (2.0, [2.0 + half, 5.0 + half]), (3.0, [4.0, 6.0]), (9.0, [4.0, 6.0])] {
         let corner = posed(&fixture, time_s).instances[0].world_from_model.transform_point3(DVec3::X);
@@ -47,7 +47,7 @@ fn nodes_move_with_their_parents() {
     }
 }
 
-/// Weights of two targets by a step; what both add is added.
+/// Step-interpolated weights of two targets; the displacements of both are added.
 #[test]
 fn morph_targets_add_what_their_weights_say() {
     let mut fixture = Fixture::triangle();
@@ -68,8 +68,8 @@ fn morph_targets_add_what_their_weights_say() {
     assert_eq!(first(&posed(&fixture, 1.0)), Vec3::new(1.0, 0.0, 0.25));
 }
 
-/// A triangle whose corners follow the first joint, the second, and both by half; the second is moved and turned. Its own node's
-/// place does not count.
+/// A triangle whose corners follow the first joint, the second, and both equally; the second is moved and rotated. The
+/// node's own transform is ignored.
 fn skinned(weights: [f32; 12], joints: [u16; 12]) -> Fixture {
     let mut fixture = Fixture::triangle();
     let weights = fixture.floats(4, &weights);
@@ -95,7 +95,7 @@ fn skins_bend_by_their_joints() {
     let instance = &scene.instances[0];
     let place =
         |vertex: usize| instance.world_from_model.transform_point3(scene.meshes[0].positions[vertex].as_dvec3());
-    // (1, 0, 0) turned by 180° about z and raised by 2; (0, 1, 0) halfway between itself and (0, -1, 2).
+    // (1, 0, 0) rotated by 180° about z and raised by 2; (0, 1, 0) halfway between itself and (0, -1, 2).
     for (vertex, truth) in [(0, DVec3::ZERO), (1, DVec3::new(-1.0, 0.0, 2.0)), (2, DVec3::new(0.0, 0.0, 1.0))] {
         assert!((place(vertex) - truth).length() < 1e-6, "{vertex}: {}", place(vertex));
     }
@@ -111,7 +111,7 @@ fn what_is_wrong_is_named_with_animation_and_channel() {
         fixture
     };
     let named = |text: &str, words: &[&str]| assert!(words.iter().all(|word| text.contains(word)), "{words:?}: {text}");
-    // Keys that no curve can have leave their channel out.
+    // Channels with invalid keys are skipped.
     let left_out = |change: &dyn Fn(&mut Fixture), words: &[&str]| {
         let fixture = changed(change);
         named(&fixture.warnings(), words);
@@ -152,7 +152,7 @@ fn what_is_wrong_is_named_with_animation_and_channel() {
     assert!(scene.pose(Some(3), 0.0).is_err_and(|told| told.to_string().contains("animation 3: there are 1")));
 }
 
-/// An animation, or a joint at rest, may not move the scene farther than f32 can square.
+/// Neither an animation nor a joint at rest may move the scene beyond the range in which f32 squares are finite.
 #[test]
 fn poses_stay_within_the_largest_coordinate() {
     let mut fixture = hierarchy();

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::fixture::Fixture;
 use crate::Scene;
 
-/// The triangle on a node at (0, 5, 0), three times as large, with the instances of `attributes`.
+/// Returns the triangle on a node at (0, 5, 0), scaled by three, with the instances of `attributes`.
 fn instanced(attributes: impl FnOnce(&mut Fixture) -> Value) -> Fixture {
     let mut fixture = Fixture::triangle();
     let attributes = attributes(&mut fixture);
@@ -34,7 +34,7 @@ const PLACES: [f32; 6] = [1.0, 2.0, 3.0, -4.0, 0.0, 0.5];
 const SIZES: [f32; 6] = [1.0, 2.0, 3.0, 0.5, 0.25, -1.0];
 const TURNS: [f32; 8] = [0.0, 0.6, 0.0, 0.8, 0.5, 0.5, 0.5, 0.5];
 
-/// Every combination of the three attributes; what is missing is the identity.
+/// Every combination of the three attributes; missing ones are the identity.
 #[test]
 fn instances_are_placed_by_what_they_have() {
     for has in 1..8_u32 {
@@ -72,7 +72,7 @@ fn instances_are_placed_by_what_they_have() {
     }
 }
 
-/// Rotations in bytes and in 16 bits, normalized: 60° about z to the accuracy of their codes.
+/// Normalized rotations in 8 and 16 bits: 60° about z, up to quantization.
 #[test]
 fn rotations_may_be_integers() {
     let (sine, cosine) = (0.5_f64, 0.75_f64.sqrt());
@@ -88,7 +88,7 @@ fn rotations_may_be_integers() {
         });
         let node = DMat4::from_translation(DVec3::Y * 5.0) * DMat4::from_scale(DVec3::splat(3.0));
         let truth = node * DMat4::from_rotation_z(std::f64::consts::FRAC_PI_3);
-        // The angle is off by a code at most, three times that after the node's scale.
+        // The angle has an error of at most one step, three times that after the node's scale.
         assert_close(loaded(&fixture).instances[0].world_from_model, truth, 3.0 * step);
     }
 }
@@ -130,11 +130,12 @@ fn broken_instances_are_errors() {
     wrong(&|f| json!({"ROTATION": f.floats(4, &[0.0; 4])}), "the rotation of instance 0 has no length");
     wrong(&|f| json!({"SCALE": f.floats(3, &[1.0, f32::NAN, 1.0])}), "the transform of instance 0 is not finite");
     wrong(&|_| json!({"TRANSLATION": 99}), "accessor 99");
-    wrong(&|_| json!({"TRANSLATION": "no"}), "its TRANSLATION is no index of an accessor");
+    wrong(&|_| json!({"TRANSLATION": "no"}), "its TRANSLATION is not an accessor index");
     wrong(&|f| json!({"TRANSLATION": f.floats(4, &[0.0; 4])}), "has 4 components, not 3");
 }
 
-/// A hidden parent hides its children and its lights, whatever they say; cameras and the places of nodes stay.
+/// A hidden parent hides its children and their lights, regardless of their own visibility; cameras and node transforms
+/// stay.
 #[test]
 fn hidden_nodes_hide_what_is_below_them() {
     let mut fixture = Fixture::triangle();

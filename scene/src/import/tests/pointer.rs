@@ -1,4 +1,4 @@
-//! KHR_animation_pointer: what pointers name changes, and nothing else, and comes back to rest.
+//! KHR_animation_pointer: a pointer changes only its property, and the rest pose restores it.
 
 mod attached;
 mod emission;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::fixture::{Fixture, png};
 use crate::Scene;
 
-/// The triangle with texture coordinates, a material and a texture.
+/// Returns the triangle with texture coordinates, a material and a texture.
 fn with_material(material: Value) -> Fixture {
     let mut fixture = Fixture::triangle();
     let uv = fixture.floats(2, &[0.0; 6]);
@@ -23,7 +23,7 @@ fn with_material(material: Value) -> Fixture {
     fixture
 }
 
-/// Appends a channel to animation 0 that takes a property from the first value at 0 s to the second at 2 s.
+/// Appends a channel to animation 0 that changes a property from the first value at 0 s to the second at 2 s.
 fn animate(fixture: &mut Fixture, pointer: &str, keys: [&[f32]; 2]) {
     if fixture.json["animations"].is_null() {
         fixture.push("animations", json!({"samplers": [], "channels": []}));
@@ -54,7 +54,7 @@ fn posed(fixture: &Fixture, time_s: f64) -> Scene {
     scene
 }
 
-/// Nodes by pointers move as by channels of the core.
+/// Pointers move nodes like core channels.
 #[test]
 fn nodes_move_by_pointers_as_by_paths() {
     let half = std::f32::consts::FRAC_1_SQRT_2;
@@ -123,7 +123,7 @@ fn what_cannot_be_animated_is_warned_of_and_left_out() {
     assert_eq!(scene.motion.animations[0].channels.len(), 1);
 }
 
-/// Materials that nothing shows, and lights and cameras that no node has, are not in the scene.
+/// Unused materials, lights and cameras are not in the scene.
 #[test]
 fn objects_that_the_scene_does_not_use_are_quietly_left_out() {
     let mut fixture = with_material(json!({}));
@@ -138,7 +138,7 @@ fn objects_that_the_scene_does_not_use_are_quietly_left_out() {
     assert!(loaded(&fixture).motion.animations[0].channels.is_empty());
 }
 
-/// Output of the wrong width leaves the channel out.
+/// An output of the wrong width disables the channel.
 #[test]
 fn outputs_must_have_the_width_of_their_property() {
     let mut fixture = with_material(json!({}));

@@ -1,4 +1,4 @@
-//! Real files. A test whose file is not at hand says that it is skipped.
+//! Real files. A test whose file is missing reports that it is skipped.
 
 use glam::DVec3;
 
@@ -24,7 +24,7 @@ fn flight_helmet_comes_in_whole() {
     for material in &scene.materials {
         assert!(material.base_color_texture.is_some(), "{}", material.name);
         assert!(material.normal_texture.is_some(), "{}", material.name);
-        // One image for occlusion, roughness and metal: one texture, not two.
+        // One image for occlusion, roughness and metallic: one texture, not two.
         let occlusion = material.occlusion_texture.map(|s| s.texture);
         assert_eq!(occlusion, material.metallic_roughness_texture.map(|s| s.texture));
     }
@@ -39,7 +39,7 @@ fn flight_helmet_comes_in_whole() {
     assert!(camera.eye.distance(DVec3::ZERO) < 3.0);
 }
 
-/// The row of `docs/measurements/performance.md`: vertices shaded for a triangle, in the order of the file and as drawn.
+/// Row of `docs/measurements/performance.md`: shaded vertices per triangle, in file order and as drawn.
 #[test]
 fn flight_helmet_is_ordered_for_drawing() {
     let Some(path) = file("assets/models/FlightHelmet/FlightHelmet.gltf") else {
@@ -63,8 +63,8 @@ fn flight_helmet_is_ordered_for_drawing() {
     );
 }
 
-/// Tangents of the file against generated ones: baked by another implementation of the same
-/// algorithm, so nearly all agree in direction and handedness. A wrong sign of v would flip all.
+/// Compares the file's tangents with generated ones. They come from another implementation of the algorithm, so nearly
+/// all agree in direction and handedness. A wrong sign of v would flip all.
 #[test]
 fn generated_tangents_agree_with_the_files() {
     let Some(path) = file("assets/models/FlightHelmet/FlightHelmet.gltf") else {
@@ -76,7 +76,7 @@ fn generated_tangents_agree_with_the_files() {
         let mut mesh = original.clone();
         mesh.tangents.clear();
         geometry::generate_tangents(&mut mesh, 0);
-        // Generation may split vertices, but keeps the order of corners.
+        // Generation may split vertices, but keeps the corner order.
         for (new, old) in mesh.indices.iter().zip(&original.indices) {
             let (new, old) = (mesh.tangents[*new as usize], original.tangents[*old as usize]);
             all += 1;
@@ -89,8 +89,8 @@ fn generated_tangents_agree_with_the_files() {
     assert!(f64::from(same_hand) > 0.99 * f64::from(all), "{same_hand} of {all}");
 }
 
-/// Models that others compressed. Their accessors state the bounds of positions before quantization. Bounds of what is decoded
-/// are within half a step of 14 bits, the default of the program that wrote the files.
+/// Models compressed by others. Their accessors state the bounds before quantization. Decoded bounds agree within half
+/// a step of 14 bits, the default of the program that wrote the files.
 #[cfg(feature = "draco")]
 #[test]
 fn models_under_draco_come_in_whole() {

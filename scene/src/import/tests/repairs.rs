@@ -1,4 +1,4 @@
-//! Faults of vertices that the importer repairs with one warning a kind.
+//! Vertex faults that the importer repairs, with one warning per kind.
 
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::json;
@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 
 const NAN: f32 = f32::NAN;
 
-/// A tent of two triangles, 1 and 3 m² in size, that share an edge: vertices 0 and 1 belong to both. Normals as given.
+/// A tent of two triangles of 1 and 3 m², which share an edge: both use vertices 0 and 1.
 fn tent(normals: [[f32; 3]; 4]) -> Fixture {
     let mut fixture = Fixture::new();
     let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3.0]];
@@ -30,7 +30,7 @@ fn loaded(fixture: &Fixture) -> Scene {
     fixture.load().expect("it is repaired")
 }
 
-/// The vertex of a mesh at a place, which drawing order may have moved.
+/// Returns the vertex of a mesh at a position, since reordering may have moved it.
 fn vertex(mesh: &Mesh, place: [f32; 3]) -> usize {
     mesh.positions.iter().position(|p| *p == Vec3::from_array(place)).expect("it is there")
 }
@@ -40,7 +40,7 @@ fn one_warning(scene: &Scene, text: &str) {
     assert!(scene.warnings.len() == 1 && scene.warnings[0].ends_with(text), "{text}: {:?}", scene.warnings);
 }
 
-/// Triangles of 1 m² that faces +z and of 3 m² that faces +y meet in vertex 0: its normal is (0, 3, 1) / √10.
+/// Triangles of 1 m² facing +z and 3 m² facing +y meet in vertex 0: its normal is (0, 3, 1) / √10.
 #[test]
 fn normals_without_direction_are_recomputed_by_area() {
     let up = [0.0, 0.0, 5.0];
@@ -110,7 +110,7 @@ fn coordinates_and_colors_that_are_no_numbers_become_zero() {
     assert!(lines.contains("mesh 0 primitive 0: 2 vertex colors are not finite; 0 is used"), "{lines}");
 }
 
-/// The triangle, bent by two joints of which the second is 1 above; weights of the two joints for each vertex.
+/// The triangle, bent by two joints of which the second is 1 above, with weights of both joints for each vertex.
 fn skinned(weights: [[f32; 2]; 3]) -> Fixture {
     let mut fixture = Fixture::triangle();
     let joints = fixture.array(&[0, 1, 0, 0].repeat(3), 5121, "VEC4", 3);
@@ -124,7 +124,7 @@ fn skinned(weights: [[f32; 2]; 3]) -> Fixture {
     fixture
 }
 
-/// Height of each vertex: its share of the second joint.
+/// Returns the height of each vertex, which is its weight of the second joint.
 fn heights(scene: &Scene) -> [f64; 3] {
     let (mesh, world) = (&scene.meshes[0], scene.instances[0].world_from_model);
     let places = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
@@ -143,20 +143,20 @@ fn weights_are_normalized() {
     };
     let warning =
         |count: usize| format!("the skin weights of {count} vertices do not add up to 1; they were normalized");
-    // Sums of 2, 0.5 and 1; then negative, absent and unusable ones, of which the first joint gets the vertex.
+    // Sums of 2, 0.5 and 1; then negative, missing and unusable weights, which assign the vertex to the first joint.
     let scene = loaded(&skinned([[0.5, 1.5], [0.25, 0.25], [0.0, 1.0]]));
     close(&scene, [0.75, 0.5, 1.0]);
     one_warning(&scene, &warning(2));
     let scene = loaded(&skinned([[-1.0, 0.5], [0.0, 0.0], [NAN, f32::INFINITY]]));
     close(&scene, [1.0, 0.0, 0.0]);
     one_warning(&scene, &warning(3));
-    // Rounding to bytes is no fault.
+    // Rounding to 8 bits is no fault.
     let scene = loaded(&skinned([[0.501, 0.501], [0.75, 0.248], [1.0, 0.0]]));
     close(&scene, [0.5, 0.248 / 0.998, 0.0]);
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
 }
 
-/// Fifty primitives with the same two faults are two warnings.
+/// Fifty primitives with the same two faults cause two warnings.
 #[test]
 fn faults_of_many_primitives_are_one_warning_a_kind() {
     let mut fixture = tent([[0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0; 3]]);
@@ -164,7 +164,7 @@ fn faults_of_many_primitives_are_one_warning_a_kind() {
     let primitive = fixture.json["meshes"][0]["primitives"][0].clone();
     for number in 0..49 {
         let mut next = primitive.clone();
-        // Accessors of its own, or the geometry would be shared.
+        // Separate accessors, otherwise the geometry would be shared.
         let view = fixture.json["accessors"][0].clone();
         next["attributes"]["POSITION"] = json!(fixture.push("accessors", view));
         next["extras"] = json!(number);
@@ -179,7 +179,7 @@ fn faults_of_many_primitives_are_one_warning_a_kind() {
     );
 }
 
-/// A buffer without URI in a file without binary chunk reads as zeros, with a warning, and without one if nothing reads it.
+/// A buffer without URI in a file without binary chunk reads as zeros. A warning is issued only if something reads it.
 #[test]
 fn absent_buffers_are_zeros_where_they_are_read() {
     let mut fixture = tent([[0.0, 0.0, 1.0]; 4]);
@@ -193,16 +193,16 @@ fn absent_buffers_are_zeros_where_they_are_read() {
     let scene = loaded(&fixture);
     assert_eq!(scene.meshes[0].colors, [Vec4::ZERO; 4]);
     one_warning(&scene, "buffer 1: the buffer has neither a URI nor a binary chunk; zeros are read from it");
-    // More than memory is refused, not allocated.
+    // A length above the memory budget fails without allocation.
     fixture.set(&format!("/bufferViews/{view}/buffer"), json!(2));
     assert!(fixture.error().contains("buffer 2: "), "{}", fixture.error());
-    // Beyond the length that the file states nothing is read.
+    // Nothing is read beyond the stated length.
     fixture.set(&format!("/bufferViews/{view}/buffer"), json!(1));
     fixture.set(&format!("/bufferViews/{view}/byteLength"), json!(65));
     assert!(fixture.error().contains("covers 65 bytes"), "{}", fixture.error());
 }
 
-/// Keys at equal times are no curve: the channel is left out, and another one is kept.
+/// Channels with keys at equal times are skipped, others are kept.
 #[test]
 fn channels_whose_times_are_all_zero_are_left_out() {
     let mut fixture = Fixture::triangle();

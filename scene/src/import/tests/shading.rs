@@ -90,7 +90,7 @@ fn a_full_material_comes_through() {
     assert_eq!((m.normal_scale, m.occlusion_strength), (0.7, 0.6));
     assert_eq!(m.alpha, AlphaMode::Mask { cutoff: 0.3 });
     assert!(m.double_sided && m.unlit);
-    // Offset, coordinate set (the transform overrides) and role of each slot, in order.
+    // Offset, coordinate set (overridden by the transform) and role of each slot, in order.
     let expected = [
         (1.0, 0, TextureRole::Color, 0),
         (2.0, 1, TextureRole::Linear, 0),
@@ -120,7 +120,7 @@ fn a_full_material_comes_through() {
         };
         assert_eq!(sampler, if green == 0 { given } else { Sampler::default() });
     }
-    // Image 0 in two roles and image 1 in two: four textures, two images, two samplers.
+    // Image 0 and image 1 in two roles each: four textures, two images, two samplers.
     let sizes = (scene.textures.len(), scene.images.len(), scene.samplers.len());
     assert_eq!(sizes, (4, 2, 2));
 }
@@ -163,7 +163,7 @@ fn with_light(light: Value) -> Fixture {
     let mut fixture = Fixture::triangle();
     fixture.json["extensionsRequired"] = json!(["KHR_lights_punctual"]);
     fixture.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [light]}});
-    // 90° around x: −z becomes +y... and a scale, which lights ignore.
+    // 90° around x: −z becomes +y; lights ignore the scale.
     let half = std::f32::consts::FRAC_1_SQRT_2;
     fixture.push(
         "nodes",
@@ -202,7 +202,7 @@ fn lights_have_their_units_place_and_direction() {
     assert!(scene.warnings.is_empty());
 }
 
-/// Inner = outer divides by zero in the falloff; a half-angle beyond 90° is no cone.
+/// Equal inner and outer angles would divide by zero in the falloff; a half-angle beyond 90° is no cone.
 #[test]
 fn cone_angles_are_kept_apart() {
     for (inner, outer) in [(0.5, 0.5), (1.0, 0.5), (0.2, 3.0)] {
@@ -280,7 +280,7 @@ fn broken_cameras_are_errors() {
     }
     let wide = with_camera(json!({"type": "perspective", "perspective": {"yfov": 4.0, "znear": 0.1}}));
     assert!(wide.warnings().contains("camera 0: its yfov") && wide.load().expect("warned").cameras.is_empty());
-    // The type names parameters that are not there: the crate's own accessor would panic.
+    // The parameters of the type are missing; the accessor of the `gltf` crate would panic.
     let lens = json!({"yfov": 1.0, "znear": 0.1});
     let error = with_camera(json!({"type": "orthographic", "perspective": lens})).error();
     assert!(error.contains("no parameters"), "{error}");

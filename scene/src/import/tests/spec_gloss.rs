@@ -1,4 +1,4 @@
-//! KHR_materials_pbrSpecularGlossiness as metal-rough materials that Filament would shade alike.
+//! KHR_materials_pbrSpecularGlossiness, converted to metallic-roughness materials that Filament shades alike.
 
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
@@ -8,7 +8,7 @@ use crate::Scene;
 use crate::material::Material;
 use crate::texture::TextureRole;
 
-/// The triangle with a material that has the extension, and images whose alpha is glossiness.
+/// Returns the triangle with a material that has the extension, and images with glossiness in alpha.
 fn with(extension: Value) -> Fixture {
     let mut fixture = Fixture::triangle();
     let uv = fixture.floats(2, &[0.0; 6]);
@@ -36,8 +36,8 @@ fn loaded(fixture: &Fixture) -> Scene {
     scene
 }
 
-/// Returns f0 and diffuse albedo, before its factor 1 − max f0, of a metal-rough material with a specular color. The
-/// formulas are those of KHR_materials_specular, which Filament shades.
+/// Returns f0 and diffuse albedo, before its factor 1 − max f0, of a metallic-roughness material with a specular color.
+/// The formulas are those of KHR_materials_specular, as Filament shades it.
 fn f0_and_diffuse(material: &Material) -> (Vec3, Vec4) {
     assert_eq!(material.metallic, 0.0, "a metal has no diffuse part");
     let specular = material.specular.expect("it has a specular color");
@@ -61,7 +61,7 @@ fn factors_become_f0_diffuse_and_roughness() {
     assert_eq!(scene.materials[0].roughness, 0.0);
 }
 
-/// One image serves as specular color, decoded from sRGB, and makes an image of roughness: 1 − glossiness · alpha.
+/// One image is the specular color, decoded from sRGB, and the source of a roughness image: 1 − glossiness · alpha.
 #[test]
 fn a_texture_of_glossiness_makes_one_of_roughness() {
     let slot = json!({"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0.25]}}});
@@ -84,13 +84,13 @@ fn a_texture_of_glossiness_makes_one_of_roughness() {
     assert_eq!(roughness.map(|slot| slot.transform), specular.color_texture.map(|slot| slot.transform));
     let computed = image(roughness);
     assert_eq!((computed.width, computed.height, scene.images.len()), (3, 1, 3));
-    // Green: 1 − 0.5 · (1, 0, 128/255), blue, the metallic share: 0.
+    // Green: 1 − 0.5 · (1, 0, 128/255); blue (metallic): 0.
     let green: Vec<u8> = computed.rgba8().expect("texels").chunks(4).map(|texel| texel[1]).collect();
     assert_eq!(green, [128, 255, 191]);
     assert!(computed.rgba8().expect("texels").chunks(4).all(|texel| texel[2] == 0));
 }
 
-/// Materials share what is computed from the same image and factor, and a plain use of the image stays apart.
+/// Materials share computed images with the same source and factor; a direct use of the source is separate.
 #[test]
 fn computed_images_are_shared() {
     let mut fixture = with(json!({"specularGlossinessTexture": {"index": 0}}));
@@ -115,7 +115,7 @@ fn computed_images_are_shared() {
     assert_eq!(image(0), image(1));
     assert!(image(0) != image(2) && image(3) != image(0) && image(3) != image(2));
     assert_eq!(scene.images[image(3)].rgba8().expect("texels")[..4], [200, 100, 50, 255], "the image of the file");
-    // The file's two images, and two computed ones: the base color of the last material is none of the extension's.
+    // Three images: those of the file, and computed ones. The extension replaces the base color of the last material.
     assert_eq!(scene.images.len(), 3);
 }
 
@@ -130,7 +130,7 @@ fn what_is_out_of_range_is_clamped_or_refused() {
     let at = "material 0: KHR_materials_pbrSpecularGlossiness: its ";
     for (extension, word) in [
         (json!({"diffuseFactor": [1, 1, 1]}), "diffuseFactor is not 4 numbers"),
-        (json!({"glossinessFactor": "shiny"}), "glossinessFactor is no number"),
+        (json!({"glossinessFactor": "shiny"}), "glossinessFactor is not a number"),
         (json!({"specularGlossinessTexture": {}}), "specularGlossinessTexture has no index"),
     ] {
         let error = with(extension).error();

@@ -73,7 +73,7 @@ fn stencil_states_are_read() {
     assert!(matches!(&scene.warnings[..], [one] if one.ends_with(warning)), "{:?}", scene.warnings);
 }
 
-/// All wrong values of a file are one warning with their number, which names the first by node and member.
+/// All invalid values of a file cause one warning with their number, which names the first by node and member.
 #[test]
 fn wrong_switches_are_counted_and_ignored() {
     let mut fixture = lit_triangle();

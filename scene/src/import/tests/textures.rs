@@ -13,7 +13,7 @@ use crate::progress::silent;
 use crate::scene::Scene;
 use crate::texture::{BlockFormats, ImageFormat, TextureRole};
 
-/// A triangle whose material reads texture 0 as base color, and texture 1 as normal map if there is one.
+/// Returns a triangle whose material reads texture 0 as base color, and texture 1, if any, as normal map.
 fn with_textures(images: &[&[u8]], textures: &[Value]) -> Fixture {
     let mut fixture = Fixture::triangle();
     let uv = fixture.floats(2, &[0.0; 6]);
@@ -54,7 +54,7 @@ fn formats(bc7: bool, etc2: bool, astc: bool) -> LoadOptions {
     LoadOptions { block_formats: BlockFormats { bc7, etc2, astc }, ..LoadOptions::default() }
 }
 
-/// The extension that comes first in the importer's list, then the other, then the fallback.
+/// The extension that is first in the importer's list, then the other, then the fallback.
 #[test]
 fn the_image_of_an_extension_is_preferred() {
     let (ktx, webp, fallback) = (file("color_etc1s.ktx2"), file("color_lossless.webp"), png(3, 1, [9; 4]));
@@ -78,7 +78,7 @@ fn the_image_of_an_extension_is_preferred() {
     }
 }
 
-/// A texture may lack an image (glTF 2.0, section 5.29): one for each kind, without and with an extension that is not read.
+/// A texture may lack an image (glTF 2.0, section 5.29): one of each kind, without and with an unsupported extension.
 #[test]
 fn textures_without_an_image_are_left_out() {
     for texture in [json!({}), json!({"extensions": {"MSFT_texture_dds": {"source": 0}}})] {
@@ -92,7 +92,8 @@ fn textures_without_an_image_are_left_out() {
     }
 }
 
-/// Blocks where the device samples them; a normal map not as ETC2; files without whole blocks or all levels as RGBA.
+/// Block formats that the device supports; normal maps not as ETC2; images without whole blocks or with missing levels
+/// as RGBA.
 #[test]
 fn images_are_transcoded_to_what_the_device_samples() {
     let (color, normal) = (file("color_uastc_zstd.ktx2"), file("normal_uastc.ktx2"));
@@ -114,7 +115,7 @@ fn images_are_transcoded_to_what_the_device_samples() {
     }
 }
 
-/// Blocks of 64 × 64 texels with all levels take 5,488 bytes, and RGBA 21,844; the budget is charged for what is made.
+/// Blocks of 64 × 64 texels with all levels need 5,488 bytes, RGBA 21,844; the budget is charged for the chosen format.
 #[test]
 fn the_budget_is_charged_for_the_format() {
     let fixture = with_textures(&[&file("color_uastc.ktx2")], &[basis(0)]);

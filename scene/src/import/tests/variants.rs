@@ -10,8 +10,8 @@ use crate::import::load_bytes_with;
 use crate::progress::silent;
 use crate::{LoadOptions, Scene};
 
-/// Three primitives with the material 0. The first maps the variants `day` and `dusk` to 1 and `night` to 2, the second `night`
-/// to 3, the third nothing.
+/// Three primitives with material 0. The first maps the variants `day` and `dusk` to 1 and `night` to 2, the second
+/// `night` to 3, the third none.
 fn shoe() -> Fixture {
     let mut fixture = Fixture::triangle();
     for roughness in [0.0, 0.25, 0.5, 0.75] {
@@ -39,7 +39,7 @@ fn load(fixture: &Fixture, variant: Option<&str>) -> Result<Scene, SceneError> {
     load_bytes_with(Path::new("shoe.glb"), &fixture.glb(), &options, &mut silent)
 }
 
-/// The roughness of each instance, which tells materials apart.
+/// Returns the roughness of each instance, which identifies materials.
 fn roughnesses(fixture: &Fixture, variant: Option<&str>) -> Vec<f32> {
     let scene = load(fixture, variant).expect("it is sound");
     assert_eq!(scene.variants, ["day", "dusk", "night"]);
@@ -58,11 +58,11 @@ fn a_variant_changes_the_primitives_that_map_it() {
     ] {
         assert_eq!(roughnesses(&fixture, variant), truth, "{variant:?}");
     }
-    // Only materials that are shown are read.
+    // Only used materials are read.
     assert_eq!(load(&fixture, Some("night")).expect("it is sound").materials.len(), 3);
 }
 
-/// A primitive without a material gets that of the variant; one geometry is shared by both materials.
+/// A primitive without a material gets that of the variant; both materials share one geometry.
 #[test]
 fn variants_replace_the_default_material_too() {
     let mut fixture = shoe();

@@ -1,4 +1,4 @@
-//! Vectors, quaternions and matrices as plain arrays of f64. Nothing here is the crate's.
+//! Vectors, quaternions and matrices as f64 arrays, independent of the crate.
 
 use std::array::from_fn;
 
@@ -64,7 +64,7 @@ fn inverse_transpose(m: &Matrix) -> [Vector; 3] {
     [cross(y, z), cross(z, x), cross(x, y)].map(|column| column.map(|v| v / determinant))
 }
 
-/// Returns a normal where `m` moves positions, of unit length.
+/// Returns the unit normal where `m` transforms positions.
 pub fn normal(m: &Matrix, n: Vector) -> Vector {
     let columns = inverse_transpose(m);
     unit(from_fn(|row| (0..3).map(|k| columns[k][row] * n[k]).sum()))
@@ -97,12 +97,12 @@ pub fn slerp(a: Quaternion, b: Quaternion, share: f64) -> Quaternion {
     from_fn(|i| from * a[i] + to * b[i])
 }
 
-/// Numbers that look random and are the same in every run, from −1 to 1.
+/// Deterministic pseudo-random numbers from −1 to 1.
 pub struct Noise(pub u64);
 
 impl Noise {
     pub fn number(&mut self) -> f64 {
-        // Numbers of Knuth's MMIX.
+        // Constants of Knuth's MMIX generator.
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as f64 / f64::from(1 << 30) - 1.0
     }
@@ -111,14 +111,14 @@ impl Noise {
         from_fn(|_| rounded(size * self.number()))
     }
 
-    /// A rotation by up to `angle` radians.
+    /// Returns a rotation by up to `angle` radians.
     pub fn rotation(&mut self, angle: f64) -> Quaternion {
         let axis = [self.number(), self.number(), self.number() + 1.5];
         turn(axis, angle * self.number()).map(rounded)
     }
 }
 
-/// Returns a number as a file stores it in 32 bits.
+/// Returns a number rounded to 32 bits, as in a file.
 pub fn rounded(number: f64) -> f64 {
     f64::from(number as f32)
 }

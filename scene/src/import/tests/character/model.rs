@@ -1,10 +1,10 @@
-//! A character: nodes, skins, meshes and animations as plain numbers, and the file that holds them.
+//! A character as numbers: nodes, skins, meshes and animations, and its file.
 
 use super::super::fixture::Fixture;
 use super::math::{Matrix, Quaternion, Vector, rounded};
 use serde_json::{Value, json};
 
-/// The transform of a node to its parent.
+/// Transform of a node relative to its parent.
 #[derive(Clone, Copy)]
 pub enum Local {
     Parts(Vector, Quaternion, Vector),
@@ -17,7 +17,7 @@ pub struct Node {
     pub local: Local,
 }
 
-/// The encoding of numbers.
+/// Encoding of numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Code {
     F32,
@@ -28,7 +28,7 @@ pub enum Code {
 }
 
 impl Code {
-    /// The largest code of a normalized integer; `None` for floats.
+    /// Returns the maximum of a normalized integer; `None` for floats.
     fn largest(self) -> Option<f64> {
         match self {
             Self::F32 => None,
@@ -39,7 +39,7 @@ impl Code {
         }
     }
 
-    /// Returns the stored number that is closest.
+    /// Returns the closest storable number.
     pub fn stored(self, number: f64) -> f64 {
         self.largest().map_or(rounded(number), |largest| (number * largest).round() / largest)
     }
@@ -77,7 +77,7 @@ impl Code {
     }
 }
 
-/// Four influences a vertex: places of joints in the skin, and weights as they are stored.
+/// Four influences per vertex: indices into the skin's joints, and weights as stored.
 #[derive(Clone, Default)]
 pub struct Influences {
     pub joints: Vec<[u16; 4]>,
@@ -95,9 +95,9 @@ pub struct Shape {
     pub positions: Vec<Vector>,
     pub normals: Vec<Vector>,
     pub influences: Vec<Influences>,
-    /// The encoding of weights.
+    /// Encoding of weights.
     pub weights: Code,
-    /// Joints are stored in 16 bits, not 8.
+    /// True if joints are stored in 16 bits instead of 8.
     pub wide_joints: bool,
     pub morphs: Vec<Morph>,
     pub morph_weights: Vec<f64>,
@@ -110,7 +110,7 @@ pub struct Skin {
     pub skeleton: Option<usize>,
 }
 
-/// A node that shows a shape.
+/// A node that draws a shape.
 #[derive(Clone, Copy)]
 pub struct Drawn {
     pub node: usize,
@@ -139,16 +139,16 @@ pub struct Channel {
     pub path: Path,
     pub way: Way,
     pub times: Vec<f64>,
-    /// Stored numbers: for each key a value, or tangent, value and tangent.
+    /// Stored numbers: for each key a value, or in-tangent, value and out-tangent.
     pub values: Vec<f64>,
     pub code: Code,
 }
 
 #[derive(Clone, Default)]
 pub struct Character {
-    /// Parents before their children.
+    /// Nodes; parents precede their children.
     pub nodes: Vec<Node>,
-    /// Roots that are not in the scene.
+    /// Roots outside of the scene.
     pub outside: Vec<usize>,
     pub shapes: Vec<Shape>,
     pub skins: Vec<Skin>,
@@ -157,7 +157,7 @@ pub struct Character {
 }
 
 impl Character {
-    /// Returns the file. The node of drawn shape N is called `drawn N`.
+    /// Returns the file. The node of drawn shape N is named `drawn N`.
     pub fn file(&self) -> Fixture {
         let mut fixture = Fixture::new();
         fixture.json["meshes"] = json!([]);
@@ -236,7 +236,7 @@ impl Character {
 }
 
 impl Shape {
-    /// Returns the primitive; each three vertices are a triangle.
+    /// Returns the primitive; every three vertices are a triangle.
     fn write(&self, fixture: &mut Fixture) -> Value {
         let vectors = |fixture: &mut Fixture, all: &[Vector]| Code::F32.write(fixture, 3, all.as_flattened());
         let position = vectors(fixture, &self.positions);

@@ -1,4 +1,4 @@
-//! Places of a character's vertices at a time, computed from the formulas of the specification alone (glTF 2.0,
+//! Vertex positions of a character at a time, computed directly from the formulas of the specification (glTF 2.0,
 //! sections 3.7.3 and 3.11, appendix C).
 
 use super::math::{IDENTITY, Matrix, Quaternion, Vector, determinant, normal, of_parts, point, product, slerp, unit};
@@ -8,7 +8,7 @@ use super::model::{Channel, Character, Drawn, Local, Path, Way};
 pub struct Posed {
     pub positions: Vec<Vector>,
     pub normals: Vec<Vector>,
-    /// The shape is turned inside out: by its node, or as a whole by the first joint of its skin.
+    /// True if the shape is mirrored by its node, or as a whole by the first joint of its skin.
     pub is_mirrored: bool,
 }
 
@@ -40,19 +40,19 @@ fn pose(character: &Character, drawn: &Drawn, time: Option<f64>, worlds: &[Matri
             }
         }
         let matrix = match drawn.skin {
-            // The node's own transform does not count.
+            // The node's own transform is ignored.
             Some(skin) => blended(character, drawn, skin, vertex, worlds),
             None => worlds[drawn.node],
         };
         posed.positions.push(point(&matrix, position));
-        // Blending may fold a vertex inside out; the normal stays on the side that the triangles show.
+        // Blending may invert a vertex; the normal stays on the visible side of the triangles.
         let side = if (determinant(&matrix) < 0.0) == posed.is_mirrored { 1.0 } else { -1.0 };
         posed.normals.push(normal(&matrix, direction).map(|n| side * n));
     }
     posed
 }
 
-/// The weighted sum of the joint matrices of a vertex.
+/// Returns the weighted sum of the joint matrices of a vertex.
 fn blended(character: &Character, drawn: &Drawn, skin: usize, vertex: usize, worlds: &[Matrix]) -> Matrix {
     let skin = &character.skins[skin];
     let mut sum = [[0.0; 4]; 4];
@@ -85,7 +85,7 @@ fn own_transform(character: &Character, node: usize, time: Option<f64>) -> Matri
     }
 }
 
-/// The value of a node's property, if a channel gives it one.
+/// Returns the value of a node's property, if a channel animates it.
 fn sampled(character: &Character, node: usize, path: Path, time: Option<f64>) -> Option<Vec<f64>> {
     let channel = character.channels.iter().find(|channel| channel.node == node && channel.path == path)?;
     Some(value(channel, time?))

@@ -1,9 +1,9 @@
-//! The characters: a biped and a chain, with rests, binds, skins and movements of many kinds.
+//! Test characters: a biped and a chain, with many kinds of rest poses, binds, skins and animations.
 
 use super::math::{IDENTITY, Matrix, Noise, Quaternion, Vector, inverse, of_parts, point, product, rounded};
 use super::model::{Channel, Character, Code, Drawn, Influences, Local, Morph, Node, Path, Shape, Skin, Way};
 
-/// Joints of a biped: each with its parent and its place from there, in meters.
+/// Joints of a biped: parent and offset from it in meters.
 const BIPED: [(Option<usize>, Vector); 11] = [
     (None, [0.0, 1.0, 0.0]),         // 0 hips
     (Some(0), [0.0, 0.3, 0.02]),     // 1 spine
@@ -18,20 +18,20 @@ const BIPED: [(Option<usize>, Vector); 11] = [
     (Some(9), [-0.02, -0.45, 0.03]), // 10 right knee
 ];
 
-/// Joints before they are nodes: parents, and the transforms of the bind pose and of the rest pose of the file.
+/// Joints before they are added as nodes: parents, bind pose and rest pose.
 pub struct Joints {
     parents: Vec<Option<usize>>,
     rest: Vec<(Vector, Quaternion, Vector)>,
-    /// From the joint's axes to those above the first joint.
+    /// Transforms from the joint's axes to those above the first joint.
     pub bind: Vec<Matrix>,
 }
 
-/// Returns the joints of a biped whose meter is `unit` long. Bind pose and rest pose differ in every joint.
+/// Returns the joints of a biped with `unit` units per meter. Bind pose and rest pose differ in every joint.
 pub fn biped(noise: &mut Noise, unit: f64) -> Joints {
     joints(noise, BIPED.iter().map(|(parent, t)| (*parent, t.map(|x| rounded(x * unit)))))
 }
 
-/// Returns `count` joints, each 5 cm from the one before.
+/// Returns `count` joints with 5 cm between neighbors.
 pub fn chain(noise: &mut Noise, count: usize) -> Joints {
     joints(noise, (0..count).map(|joint| (joint.checked_sub(1), [0.05, 0.0, 0.0].map(rounded))))
 }
@@ -62,15 +62,15 @@ impl Joints {
         (first..character.nodes.len()).collect()
     }
 
-    /// Inverse bind matrices of a mesh that was modelled in axes from which `above` leads to those above the first joint.
+    /// Returns inverse bind matrices of a mesh modeled in axes that `above` maps to those above the first joint.
     pub fn inverse_bind(&self, above: &Matrix) -> Vec<Matrix> {
         let stored = |bind: &Matrix| product(&inverse(bind), above).map(|column| column.map(rounded));
         self.bind.iter().map(stored).collect()
     }
 }
 
-/// Returns a shape with six vertices at each joint, which follow `sets` · 4 joints near it. `shape_from_above` leads from
-/// the axes above the first joint to those that the mesh is modelled in.
+/// Returns a shape with six vertices at each joint, which follow `sets` · 4 nearby joints. `shape_from_above` maps the
+/// axes above the first joint to those of the mesh.
 pub fn shape(
     noise: &mut Noise,
     joints: &Joints,
@@ -112,7 +112,8 @@ pub fn shape(
     shape
 }
 
-/// Scales weights to a sum of 1 and stores them; normalized integers keep that sum exactly, as section 3.7.3.3 asks.
+/// Scales weights to a sum of 1 and stores them; normalized integers keep that sum exactly, as section 3.7.3.3
+/// requires.
 fn stored_weights(weights: &[f64], code: Code) -> Vec<f64> {
     let sum: f64 = weights.iter().sum();
     let mut stored: Vec<f64> = weights.iter().map(|weight| code.stored(weight / sum)).collect();
@@ -147,7 +148,7 @@ pub fn draw(character: &mut Character, shape: Shape, skin: Option<Skin>, parent:
     }
 }
 
-/// A transform that nothing may notice.
+/// Returns a transform that must have no effect.
 pub fn ignored(noise: &mut Noise) -> Local {
     Local::Parts(noise.vector(9.0), noise.rotation(3.0), [3.0, 0.5, 2.0])
 }
@@ -156,7 +157,7 @@ pub fn at_origin() -> Local {
     Local::Matrix(IDENTITY)
 }
 
-/// Gives every joint channels of all three paths, with all interpolations and encodings in turn, and times of its own.
+/// Gives every joint channels for all three paths, alternating interpolations and encodings, with separate times.
 pub fn animate(noise: &mut Noise, character: &mut Character, nodes: &[usize]) {
     for (number, &node) in nodes.iter().enumerate() {
         let Local::Parts(t, _, _) = character.nodes[node].local else { panic!("a joint has parts") };
@@ -178,10 +179,10 @@ pub fn animate(noise: &mut Noise, character: &mut Character, nodes: &[usize]) {
     }
 }
 
-/// Times at which characters are compared: before, at and between keys, and behind them.
+/// Times of the comparison: before, at, between and after the keys.
 pub const TIMES: [f64; 5] = [0.0, 0.25, 0.4, 1.0, 3.0];
 
-/// A channel with four keys whose values are `value`'s.
+/// Returns a channel with four keys with the values of `value`.
 pub fn channel(
     noise: &mut Noise,
     node: usize,

@@ -1,4 +1,4 @@
-//! Compressed files with damage: each gives a scene that keeps its promises, or one line.
+//! Damaged compressed files: each loads as a valid scene or returns a one-line error.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use crate::import::load_bytes_with;
 use crate::progress::silent;
 use crate::{LoadOptions, Memory};
 
-/// Loads a damaged file within 16 MiB.
+/// Loads a damaged file with a budget of 16 MiB.
 fn survive(glb: &[u8], what: &str) -> bool {
     let options = LoadOptions { memory: Memory::new(16 << 20).into(), ..LoadOptions::default() };
     match load_bytes_with(Path::new("damaged.glb"), glb, &options, &mut silent) {
@@ -37,8 +37,8 @@ const FILES: [&str; 10] = [
     "strip_meshopt",
 ];
 
-/// One bit flipped in each part of the data; the small files of the fuzzer's corpus get every byte (`tests/it/replay.rs` adds
-/// heavier damage to them).
+/// Flips one bit in each part of the data. For the small files of the fuzzing corpus every byte is changed
+/// (`tests/it/replay.rs` adds heavier damage).
 #[test]
 fn flipped_bits_never_panic() {
     let (mut sound, mut broken) = (0, 0);
@@ -58,7 +58,7 @@ fn flipped_bits_never_panic() {
     assert!(sound > 20 && broken > 20, "{sound} sound, {broken} broken");
 }
 
-/// The compressed data cut off at many lengths.
+/// Truncates the compressed data at many lengths.
 #[test]
 fn truncated_data_is_an_error() {
     for name in FILES {

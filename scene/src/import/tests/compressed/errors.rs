@@ -1,4 +1,4 @@
-//! Errors name the place in the file. Uncompressed copies for other programs are not read.
+//! Errors name the place in the file. Uncompressed fallbacks are not read.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -81,7 +81,7 @@ fn wrong_meshopt_objects_are_named() {
     broken("/bufferViews/0/extensions", json!({}), &["POSITION: accessor 0", "buffer 1, a fallback without data"]);
 }
 
-/// Fallbacks may be missing, or named by a URI that is not there, or not be marked.
+/// Fallbacks may be missing, have the URI of a missing file, or lack the mark.
 #[test]
 fn fallback_buffers_are_never_read() {
     let mut named = fixture("meshopt_v1");
@@ -95,7 +95,7 @@ fn fallback_buffers_are_never_read() {
     assert!(unmarked.error().contains("not there.bin"), "nothing says that this buffer is a fallback");
 }
 
-/// Both names of the extension mean the same, and the newer one wins.
+/// Both names of the extension are equivalent, and the newer one takes precedence.
 #[test]
 fn either_name_of_the_extension_is_read() {
     let mut fixture = fixture("meshopt_v1");
@@ -109,7 +109,7 @@ fn either_name_of_the_extension_is_read() {
     assert!(fixture.error().contains("buffer view 0: KHR_meshopt_compression"));
 }
 
-/// An image in a compressed view: a picture of one texel whose bytes are elements of four.
+/// An image in a compressed view, whose bytes are elements of four.
 #[test]
 fn images_may_be_compressed_views() {
     let mut plain = Fixture::triangle();
@@ -120,7 +120,8 @@ fn images_may_be_compressed_views() {
     plain.push("textures", json!({"source": 0}));
     let mut picture = super::super::fixture::png(1, 1, [10, 20, 30, 255]);
     picture.resize(picture.len().next_multiple_of(4), 0);
-    // Version 1: each byte position stored literally as a zigzag difference to the element before, from zero.
+    // Version 1: each byte position is stored literally as zigzag differences from the previous element, starting at
+    // zero.
     let count = picture.len() / 4;
     let mut stream = vec![0xa1, 0xff];
     for byte in 0..4 {
@@ -143,7 +144,8 @@ fn images_may_be_compressed_views() {
     assert_eq!(plain.load().expect("a good file").images[0].rgba8(), Some(&[10, 20, 30, 255][..]));
 }
 
-/// Primitives that share a compressed view share its decoded mesh; the same accessors with another view are another mesh.
+/// Primitives that share a compressed view share its decoded mesh; the same accessors with another view are another
+/// mesh.
 #[test]
 fn compressed_meshes_are_decoded_once_and_told_apart() {
     let mut fixture = fixture("draco_coarse");
@@ -155,14 +157,14 @@ fn compressed_meshes_are_decoded_once_and_told_apart() {
     let copy = fixture.push("bufferViews", json!({"buffer": 0, "byteOffset": start, "byteLength": length}));
     let mut other = primitive.clone();
     other["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = json!(copy);
-    // A third primitive that takes its colors from an accessor of its own.
+    // A third primitive with colors from a separate accessor.
     let white = fixture.array(&[255; 561 * 4], 5121, "VEC4", 561);
     fixture.set(&format!("/accessors/{white}/normalized"), json!(true));
     fixture.set("/buffers/0/byteLength", json!(fixture.bin.len()));
     let mut plain = primitive.clone();
     plain["extensions"]["KHR_draco_mesh_compression"]["attributes"].as_object_mut().expect("ids").remove("COLOR_0");
     plain["attributes"]["COLOR_0"] = json!(white);
-    // The first names fewer attributes than the second, which shares its view.
+    // The first uses fewer attributes than the second, which shares its view.
     fixture.set("/meshes/0/primitives", json!([plain, primitive, other, primitive]));
     let mut reports = Vec::new();
     let mut record = |p: Progress<'_>| {
@@ -178,8 +180,8 @@ fn compressed_meshes_are_decoded_once_and_told_apart() {
     assert_eq!(scene.meshes.iter().map(is_white).collect::<Vec<_>>(), [true, false, false]);
 }
 
-/// A strip's accessor counts its own corners; the stream has triangles in any case. Lines cannot be
-/// compressed: their accessors are read, which have no data here.
+/// A strip's accessor counts the strip's indices, but the stream contains triangles. Lines cannot be compressed: their
+/// accessors are read, which have no data here.
 #[test]
 fn modes_other_than_triangles() {
     let count = |scene: &Scene| scene.triangle_count();
@@ -195,7 +197,7 @@ fn modes_other_than_triangles() {
     assert!(scene.warnings.iter().any(|line| line.contains("it has no line")), "{:?}", scene.warnings);
 }
 
-/// Decoded bytes are charged before they are allocated. A load that fails gives them back.
+/// Decoded bytes are charged before they are allocated, and released by a failed load.
 #[test]
 fn decompression_keeps_to_the_budget() {
     for (name, place) in [("draco_coarse", "KHR_draco_mesh_compression"), ("meshopt_v0", "EXT_meshopt_compression")] {
@@ -212,7 +214,7 @@ fn decompression_keeps_to_the_budget() {
         assert_eq!(with(1 << 20).0.expect("a MiB is enough"), 1024);
     }
 
-    // Many views of one mesh: their decoded copies count, until the scene is built.
+    // Many views of one mesh: their decoded copies count until the scene is built.
     let mut many = fixture("draco_coarse");
     let (view, primitive) = (many.json["bufferViews"][0].clone(), many.json["meshes"][0]["primitives"][0].clone());
     for _ in 0..20 {
@@ -226,6 +228,6 @@ fn decompression_keeps_to_the_budget() {
         let options = LoadOptions { memory: Memory::new(budget).into(), ..LoadOptions::default() };
         load_bytes_with(Path::new("x.glb"), &glb, &options, &mut silent).is_ok()
     };
-    // 21 meshes of the scene take 1.5 MiB, and their compressed forms 1 MiB at the same time.
+    // The scene's 21 meshes need 1.5 MiB, and their compressed data 1 MiB at the same time.
     assert_eq!((loads(2 << 20), loads(4 << 20)), (false, true));
 }

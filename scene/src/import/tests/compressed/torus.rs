@@ -7,7 +7,7 @@ use crate::Scene;
 
 /// A vertex in world axes.
 struct Vertex {
-    /// Its number in the uncompressed file.
+    /// Number in the uncompressed file.
     number: usize,
     position: DVec3,
     normal: DVec3,
@@ -18,11 +18,11 @@ struct Vertex {
 /// Vertices and triangles of a scene with one instance.
 struct Torus {
     vertices: Vec<Vertex>,
-    /// Numbers of vertices, the least first, sorted: the order of the file does not count.
+    /// Vertex numbers, the smallest first, and sorted: file order does not matter.
     triangles: Vec<[usize; 3]>,
 }
 
-/// Tells vertices apart by the number that red and green state, or, where colors are not exact, by their order.
+/// Identifies vertices by the number in red and green or, if colors are inexact, by their order.
 fn torus(scene: &Scene, by_color: bool) -> Torus {
     let [instance] = &scene.instances[..] else { panic!("{} instances", scene.instances.len()) };
     let mesh = &scene.meshes[instance.mesh.index()];
@@ -50,7 +50,7 @@ fn torus(scene: &Scene, by_color: bool) -> Torus {
     Torus { vertices, triangles }
 }
 
-/// Largest errors: of a coordinate in meters, of a normal, of a texture coordinate, and of a channel of the color.
+/// Maximum errors: of a coordinate in meters, a normal, a texture coordinate, and a color channel.
 struct Errors {
     position: f64,
     normal: f64,
@@ -58,13 +58,13 @@ struct Errors {
     color: f64,
 }
 
-/// Half a step of a quantization with this number of bits over a range.
+/// Returns half a step of a quantization with this number of bits over a range.
 fn half_step(range: f64, bits: i32) -> f64 {
     range / (2f64.powi(bits) - 1.0) / 2.0
 }
 
-/// A normal from an octahedron whose coordinates are off by `e` each: √6·e on the octahedron, whose points are at least
-/// 1/√3 from its center.
+/// Returns the error of a normal whose octahedral coordinates have an error of `e` each: √6·e on the octahedron, whose
+/// points are at least 1/√3 from its center.
 fn octahedral(e: f64) -> f64 {
     18f64.sqrt() * e
 }
@@ -91,20 +91,21 @@ fn compare(name: &str, by_color: bool, allowed: &Errors) {
     let Errors { position, normal, uv, color } = *allowed;
     for (i, allowed) in [position, normal, uv, color].into_iter().enumerate() {
         let what = ["positions", "normals", "texture coordinates", "colors"][i];
-        // Rounding of f32, where anything is rounded at all.
+        // f32 rounding, if anything is rounded.
         let allowed = if allowed == 0.0 { 0.0 } else { allowed + 1e-6 };
         assert!(most[i] <= allowed, "{name}: {what} are {:.3e} off, over {allowed:.3e}", most[i]);
-        // An error far below a bound would mean that the bound tests nothing.
+        // An error far below the bound would make the bound useless.
         assert!(most[i] >= allowed / 12.0, "{name}: {what} are {:.3e} off, far below {allowed:.3e}", most[i]);
     }
 }
 
-/// Width of the torus, which is the range that positions are quantized over.
+/// Width of the torus, over which positions are quantized.
 const RANGE_M: f64 = 2.8;
 const EXACT: Errors = Errors { position: 0.0, normal: 0.0, uv: 0.0, color: 0.0 };
 const FINE_BITS: [i32; 3] = [14, 10, 12];
 
-/// Draco quantizes positions over the longest side, and normals to an octahedron of 2^bits − 2 steps from −1 to 1.
+/// Returns the errors of Draco: positions are quantized over the longest side, and normals to an octahedron of 2^bits −
+/// 2 steps from −1 to 1.
 fn draco([position, normal, uv]: [i32; 3]) -> Errors {
     Errors {
         position: half_step(RANGE_M, position),
@@ -152,12 +153,12 @@ fn meshopt_without_filters_is_exact() {
     compare("meshopt_v1", true, &EXACT);
 }
 
-/// Half a step of a float with a mantissa of `bits`, sign included, for values up to 2^`exponent`.
+/// Returns half a step of a float with a mantissa of `bits`, sign included, for values up to 2^`exponent`.
 fn exponential(exponent: i32, bits: i32) -> f64 {
     2f64.powi(exponent - (bits - 1)) / 2.0
 }
 
-/// Half a step of a signed number with this number of bits that stands for −1 to 1.
+/// Returns half a step of a signed number with this number of bits for −1 to 1.
 fn half_signed(bits: i32) -> f64 {
     0.5 / (2f64.powi(bits - 1) - 1.0)
 }
@@ -166,9 +167,9 @@ fn half_signed(bits: i32) -> f64 {
 fn meshopt_filters_come_back() {
     // Positions are below 2, texture coordinates below 1.
     let (position, uv) = (exponential(1, 16), exponential(0, 12));
-    // An octahedron of 8 bits, and each component of the vector rounded to 8 bits again.
+    // An octahedron of 8 bits; each component of the vector is rounded to 8 bits again.
     let normal = octahedral(half_signed(8)) + 3f64.sqrt() * half_signed(8);
-    // Red is the sum of three numbers that are rounded to a step each, and rounded again.
+    // Red is the rounded sum of three numbers, each rounded to a step.
     let color = |bits: i32| 4.0 * half_step(1.0, bits);
     compare("meshopt_filters_v0", true, &Errors { position, normal, uv, color: 0.0 });
     compare("meshopt_filters_v1", false, &Errors { position, normal, uv, color: color(8) });
@@ -182,11 +183,11 @@ fn quantized_files_come_back() {
     compare("quantized", true, &Errors { position: 1.5 * half_signed(16), normal, uv: half_step(1.0, 16), color: 0.0 });
 }
 
-/// The defaults of the program: positions of 14 bits, normals of 8, texture coordinates of 12, stored in 16.
+/// Default settings of the program: positions of 14 bits, normals of 8, texture coordinates of 12, stored in 16.
 #[test]
 fn meshopt_of_gltf_transform_comes_back() {
     let normal = octahedral(half_signed(8)) + 3f64.sqrt() * half_signed(8);
-    // Rounded to the bits, then cut to a number of 16 bits.
+    // Rounded to the bits, then truncated to 16 bits.
     let position = half_step(RANGE_M, 14) + RANGE_M * half_signed(16);
     let uv = half_step(1.0, 12) + 2.0 * half_step(1.0, 16);
     let allowed = Errors { position, normal, uv, color: 0.0 };

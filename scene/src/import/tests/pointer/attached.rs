@@ -8,7 +8,7 @@ use super::{animate, loaded, posed};
 use crate::camera::Projection;
 use crate::light::LightKind;
 
-/// A spot, a point and a directional light; nodes 1 and 2 share the spot. A camera of each kind.
+/// A spot, a point and a directional light; nodes 1 and 2 share the spot light. A camera of each kind.
 fn lit() -> Fixture {
     let mut fixture = Fixture::triangle();
     let light = |index: usize, x: f32| json!({"translation": [x, 0.0, 0.0], "extensions": {"KHR_lights_punctual": {"light": index}}});
@@ -38,7 +38,7 @@ fn spot(kind: &mut LightKind) -> [&mut f32; 4] {
     [intensity_candela, range_m.as_mut().expect("it has one"), inner_cone_rad, outer_cone_rad]
 }
 
-/// Between keys at 0 s and 2 s, with all else as at rest, for both nodes that share the light.
+/// Between keys at 0 s and 2 s, other properties are at rest, for both nodes that share the light.
 #[test]
 fn every_property_of_lights() {
     type Row = (&'static str, [&'static [f32]; 2], fn(&mut [crate::Light]));
@@ -76,7 +76,7 @@ fn every_property_of_lights() {
     }
 }
 
-/// Lights that nodes move and pointers change, of which the program dropped some.
+/// Moving lights that pointers animate, some of which the application removed.
 #[test]
 fn lights_that_are_left_still_change() {
     let mut fixture = lit();
@@ -90,7 +90,7 @@ fn lights_that_are_left_still_change() {
     assert_eq!(scene.lights[0].position, DVec3::new(0.0, 3.0, 0.0));
 }
 
-/// Both angles grow beyond the outer one at rest, in either order of channels.
+/// Both angles grow beyond the outer one at rest, in either channel order.
 #[test]
 fn cone_angles_may_grow_together() {
     let channels: [(&str, [&[f32]; 2]); 2] =
@@ -103,7 +103,7 @@ fn cone_angles_may_grow_together() {
         let mut scene = posed(&fixture, 1.0);
         assert_eq!(spot(&mut scene.lights[0].kind).map(|value| *value)[2..], [0.75, 1.25], "{order:?}");
     }
-    // An inner angle beyond the outer one is held below it.
+    // An inner angle beyond the outer one is clamped.
     let mut fixture = lit();
     animate(&mut fixture, &format!("{LIGHTS}/0/spot/innerConeAngle"), [&[1.0], &[1.0]]);
     let mut scene = posed(&fixture, 1.0);
@@ -141,7 +141,7 @@ fn every_property_of_cameras() {
     }
 }
 
-/// Both planes move beyond where the other was; a plane that stays keeps the other on its side.
+/// Both planes move beyond the other's rest position; a static plane limits the other.
 #[test]
 fn planes_may_move_together() {
     let channels: [(&str, [f32; 2]); 2] = [("znear", [4.0, 6.0]), ("zfar", [8.0, 12.0])];

@@ -1,4 +1,4 @@
-//! Emission is factor times strength, either or both of which may be animated.
+//! Emission is factor times strength; either or both may be animated.
 
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -13,7 +13,8 @@ fn glowing(factor: [f32; 3], strength: f32) -> Value {
     json!({"emissiveFactor": factor, "extensions": extension})
 }
 
-/// A file whose channels are those of `pointers`: the factor goes from (0, 1, 0) to (1, 1, 0), the strength from 2 to 6.
+/// Returns the emission for channels of `pointers`: the factor goes from (0, 1, 0) to (1, 1, 0), the strength from 2 to
+/// 6.
 fn emission(factor: [f32; 3], strength: f32, pointers: &[&str]) -> Vec3 {
     let mut fixture = with_material(glowing(factor, strength));
     for pointer in pointers {
@@ -30,7 +31,7 @@ fn emission(factor: [f32; 3], strength: f32, pointers: &[&str]) -> Vec3 {
     emission
 }
 
-/// Cubics overshoot, and products overflow: emission stays finite.
+/// Emission stays finite, although cubics overshoot and products overflow.
 #[test]
 fn emission_is_finite() {
     let mut fixture = with_material(glowing([1.0; 3], 1.0));
@@ -40,7 +41,7 @@ fn emission_is_finite() {
     assert_eq!(posed(&fixture, 1.0).materials[0].emissive, Vec3::MAX);
     let mut fixture = with_material(glowing([1.0; 3], 1.0));
     animate(&mut fixture, STRENGTH, large);
-    // Tangents that carry the cubic to f32's end and beyond.
+    // Tangents that take the cubic beyond the f32 range.
     let output = fixture.floats(1, &[0.0, f32::MAX, f32::MAX, -f32::MAX, f32::MAX, 0.0]);
     fixture.set("/animations/0/samplers/0/output", json!(output));
     fixture.set("/animations/0/samplers/0/interpolation", json!("CUBICSPLINE"));
@@ -52,7 +53,7 @@ fn factor_and_strength_multiply() {
     let rest = [0.25, 0.5, 1.0];
     assert_eq!(emission(rest, 8.0, &[FACTOR]), Vec3::new(4.0, 8.0, 0.0));
     assert_eq!(emission(rest, 8.0, &[STRENGTH]), Vec3::new(1.0, 2.0, 4.0));
-    // Both, in either order, of a material that is dark at rest by either.
+    // Both, in either order, for a material that is dark at rest for either reason.
     for (factor, strength) in [(rest, 8.0), (rest, 0.0), ([0.0; 3], 8.0)] {
         assert_eq!(emission(factor, strength, &[FACTOR, STRENGTH]), Vec3::new(2.0, 4.0, 0.0));
         assert_eq!(emission(factor, strength, &[STRENGTH, FACTOR]), Vec3::new(2.0, 4.0, 0.0));

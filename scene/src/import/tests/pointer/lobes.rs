@@ -1,16 +1,16 @@
-//! Lobes that are off at rest and on later.
+//! Lobes that are disabled at rest and enabled later.
 
 use serde_json::{Value, json};
 
 use super::{animate, loaded, posed, with_material};
 use crate::material::{Lobe, Material};
 
-/// A material with one extension that is off, and textures that show once it is on.
+/// Returns a material with one disabled extension, and textures that become visible once it is enabled.
 fn off(name: &str, extension: Value) -> Value {
     json!({"extensions": {name: extension}})
 }
 
-/// An extension that is off, a property of it with two keys, its lobe, and the property's value, −1 without the lobe.
+/// A disabled extension, one of its properties with two keys, its lobe, and the property's value, −1 without the lobe.
 type Row = (&'static str, Value, &'static str, [&'static [f32]; 2], Lobe, fn(&Material) -> f32);
 
 #[test]
@@ -76,7 +76,7 @@ fn a_lobe_that_a_pointer_turns_on_is_kept() {
             !without.lobes().contains(lobe) && without.images.is_empty(),
             "{name} is left out where nothing moves it"
         );
-        // Another property of the extension, or of another material, turns nothing on.
+        // Another property of the extension, or of another material, enables nothing.
         fixture.push("materials", json!({}));
         let mut other = fixture.clone();
         animate(&mut other, &format!("/materials/1/extensions/{name}/{property}"), keys);
@@ -106,7 +106,7 @@ fn a_volume_that_a_pointer_makes_is_kept() {
     animate(&mut fixture, thickness, [&[0.0], &[4.0]]);
     assert_eq!(volume(&loaded(&fixture)).map(|volume| volume.thickness), Some(0.0));
     assert_eq!(volume(&posed(&fixture, 1.0)).map(|volume| volume.thickness), Some(2.0));
-    // Both grow from nothing.
+    // Both grow from zero.
     let mut fixture = with_material(material(0.0));
     animate(&mut fixture, thickness, [&[0.0], &[4.0]]);
     animate(&mut fixture, "/materials/0/extensions/KHR_materials_transmission/transmissionFactor", [&[0.0], &[1.0]]);

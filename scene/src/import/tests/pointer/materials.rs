@@ -7,7 +7,7 @@ use super::{animate, loaded, posed, with_material};
 use crate::material::{AlphaMode, Material, Volume};
 use crate::texture::TextureSlot;
 
-/// A material with all lobes and all textures. No value is one that the tables below come to.
+/// Returns a material with all lobes and textures. Its values differ from all values in the tables below.
 fn full() -> Value {
     let texture = json!({"index": 0});
     let coat = json!({
@@ -57,7 +57,7 @@ fn full() -> Value {
     })
 }
 
-/// The volumes of a material, one for each kind of transmission.
+/// Returns the volumes of a material, one for each kind of transmission.
 fn volumes(material: &mut Material) -> impl Iterator<Item = &mut Volume> {
     let Material { transmission, diffuse_transmission, .. } = material;
     let both = [
@@ -67,7 +67,7 @@ fn volumes(material: &mut Material) -> impl Iterator<Item = &mut Volume> {
     both.into_iter().map(|volume| volume.as_mut().expect("a volume"))
 }
 
-/// A pointer below a material, two keys, and what the value between them does to the material at rest.
+/// A pointer relative to a material, two keys, and the effect of their interpolated value on the material at rest.
 type Row = (&'static str, [&'static [f32]; 2], fn(&mut Material));
 
 const COLOR: [&[f32]; 2] = [&[0.0, 0.5, 1.0], &[0.5, 0.0, 0.5]];
@@ -143,7 +143,7 @@ const FACTORS: &[Row] = &[
     }),
 ];
 
-/// Keys are at 0 s and 2 s. At 1 s the material differs from the one at rest in one property alone. Posing at rest
+/// Keys are at 0 s and 2 s. At 1 s only one property of the material differs from its rest value. The rest pose
 /// restores it.
 #[test]
 fn every_factor_changes_and_comes_back() {
@@ -162,7 +162,7 @@ fn every_factor_changes_and_comes_back() {
     }
 }
 
-/// A pointer below a material, and the texture slot that it names.
+/// A pointer relative to a material, and its texture slot.
 type Slot = (&'static str, fn(&mut Material) -> &mut Option<TextureSlot>);
 
 const SLOTS: &[Slot] = &[
@@ -235,7 +235,7 @@ fn every_texture_can_be_moved_turned_and_scaled() {
     });
 }
 
-/// Cubics overshoot; shading expects numbers in range.
+/// Cubics overshoot, but shading expects numbers in range.
 #[test]
 fn values_are_held_in_range() {
     let at = |pointer: &str, keys: [&[f32]; 2]| {
