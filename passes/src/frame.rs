@@ -384,7 +384,7 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         occlusion: handles.find(Slot::OCCLUSION),
         structure: handles.find(Slot::STRUCTURE),
         reflections: match handles.find(Slot::REFLECTIONS) {
-            Some(found) => Some([found, handles.get(Slot::REFLECTION_WAYS)?]),
+            Some(found) => Some([found, handles.get(Slot::HIT_DISTANCE)?]),
             None => None,
         },
         contact_shadows,

@@ -27,7 +27,7 @@ use framegraph::{Format, TextureDesc};
 use framegraph_wgpu::Frame;
 
 /// Declares screen-space reflections of a view, with the structure and a history of the radiance. The color pass has to
-/// draw into that history, of format `format`. Sets [`Slot::REFLECTIONS`], [`Slot::REFLECTION_WAYS`] and
+/// draw into that history, of format `format`. Sets [`Slot::REFLECTIONS`], [`Slot::HIT_DISTANCE`] and
 /// [`Slot::HDR_HISTORY`].
 ///
 /// # Errors
@@ -60,7 +60,7 @@ where
         reflections = frame.add("reflection_level", SceneLevel { scene: reflections, level })?.scene;
     }
     handles.set(Slot::REFLECTIONS, reflections);
-    handles.set(Slot::REFLECTION_WAYS, ways);
+    handles.set(Slot::HIT_DISTANCE, ways);
     handles.set(Slot::HDR_HISTORY, hdr);
     Ok(())
 }

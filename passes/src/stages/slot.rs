@@ -44,7 +44,7 @@ impl Slot {
     /// of the view's pictures.
     pub const REFLECTIONS: Self = Self::new("reflections", Holds::Color);
     /// Hit distances of [`Slot::REFLECTIONS`] in meters; required with it.
-    pub const REFLECTION_WAYS: Self = Self::new("reflection_ways", Holds::Color);
+    pub const HIT_DISTANCE: Self = Self::new("reflection_hit_distance", Holds::Color);
     /// Texture into which to draw the radiance, so that the next frame can read it. Still empty when set; the radiance
     /// itself is [`Slot::HDR`].
     pub const HDR_HISTORY: Self = Self::new("hdr_history", Holds::Color);

@@ -4,7 +4,7 @@
 // brings no channel below 0 or above 1, and at most 3/16 of each.
 
 /// The most that is taken of a neighbor.
-const MOST_SHARPENED: f32 = 0.1875;
+const MAX_SHARPENED: f32 = 0.1875;
 
 /// A texel sharpened by the neighbors around it; `strength` from 0 to 1. Channels above 1 are left
 /// as they are.
@@ -21,6 +21,6 @@ fn sharpened(
     let to_black = min(least, middle) / max(4.0 * most, vec3<f32>(1e-5));
     let to_white = (1.0 - max(most, middle)) / min(4.0 * least - 4.0, vec3<f32>(-1e-5));
     let lobes = max(-to_black, to_white);
-    let lobe = clamp(max(lobes.x, max(lobes.y, lobes.z)), -MOST_SHARPENED, 0.0) * strength;
+    let lobe = clamp(max(lobes.x, max(lobes.y, lobes.z)), -MAX_SHARPENED, 0.0) * strength;
     return (middle + lobe * (up + left + right + down)) / (1.0 + 4.0 * lobe);
 }

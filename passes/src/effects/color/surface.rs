@@ -74,7 +74,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "ambient_occlusion",
     "structure",
     "reflections",
-    "reflection_ways",
+    "reflection_hit_distance",
     "fog",
     "total_absorbance",
     "absorbance_moments",

@@ -64,7 +64,7 @@ impl Pass for Reflection {
         pass.depth_read_only(self.depth)?;
         let reflections = pass.texture("reflections", TextureDesc::new(extent, REFLECTION_FORMAT).mips(self.levels));
         let nothing = Intent::Clear(ClearValue::Color([0.0; 4]));
-        let ways = pass.texture("reflection_ways", TextureDesc::new(extent, Format::R16Float));
+        let ways = pass.texture("reflection_hit_distance", TextureDesc::new(extent, Format::R16Float));
         let reflections = pass.color(reflections.mip(0), nothing)?;
         Ok(ReflectionIo { structure, earlier, reflections, ways: pass.color(ways, nothing)? })
     }
