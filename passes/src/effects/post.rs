@@ -145,7 +145,7 @@ pub struct Post {
     pub into: Target,
     /// Settings of the effects.
     pub settings: PostSettings,
-    /// The only effect to apply, if each has a pass of its own.
+    /// Effect to apply, if each effect has a separate pass; `None` applies all of them.
     pub only: Option<PostEffect>,
     /// Writes encoded values with luma in alpha, for an edge filter that follows.
     pub for_fxaa: bool,

@@ -4,7 +4,7 @@ use super::settings::{BloomQuality, BloomSettings};
 
 /// Maximum side of a level in texels.
 const MAX_TEXELS: f32 = 2048.0;
-/// Sides of levels in low quality are multiples of this number: four exact halvings.
+/// Sides of levels in low quality are multiples of this number, so that four halvings are exact.
 const LOW_MULTIPLE: u32 = 16;
 
 /// Sizes of the bloom passes for a picture.

@@ -41,7 +41,7 @@ pub enum DofStep {
         /// Index of the level, at least 1.
         level: u8,
     },
-    /// Finds the least and greatest radius of each tile.
+    /// Finds the minimum and maximum radius of each tile.
     Tiles {
         /// Radiance, with the radius in alpha; its first level is read.
         field: Texture,

@@ -241,8 +241,7 @@ impl OcclusionSettings {
         Self { method: quality.method(), blur: Some(blur), ..Self::SAO }
     }
 
-    /// Returns true if the settings can occlude anything. Without radius or intensity they cannot, and the effect is
-    /// left out (hard case 32).
+    /// Returns true if the settings can occlude anything. Otherwise the effect is dropped.
     pub fn occludes(&self) -> bool {
         self.radius_m > 0.0 && self.intensity > 0.0 && self.power > 0.0
     }

@@ -18,7 +18,7 @@ static INTERFACE: Interface = Interface { groups: &[&["shadow_blur", "moments"]]
 /// Step of making a layer of moments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MomentStep {
-    /// Horizontal half of a Gaussian blur, into a texture of its own.
+    /// Horizontal half of a Gaussian blur, into a separate texture.
     Across,
     /// Vertical half of a Gaussian blur, into the layer.
     Up,

@@ -108,7 +108,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for Taa {
 }
 
 impl Taa {
-    /// True if only the jitter differs between the accumulated frames, so the history is their mean.
+    /// Returns true if only the jitter differs between frames, so that the history is their mean.
     fn rests(&self, view: &CameraView) -> bool {
         self.settings.converge && view.still_frames > 1
     }
