@@ -25,15 +25,15 @@ fn saturate_half3(color: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(saturate_half(color.x), saturate_half(color.y), saturate_half(color.z));
 }
 
-/// Whether no channel of a color is NaN or infinite.
+/// Returns true if all channels are finite.
 fn all_finite3(color: vec3<f32>) -> bool {
     let magnitude = bitcast<vec3<u32>>(color) & vec3<u32>(0x7fffffffu);
     return all(magnitude < vec3<u32>(0x7f800000u));
 }
 
-/// v / |v|, or `fallback` where v is too short to point anywhere. The largest component is
-/// divided out first, so that neither the square of a huge vector overflows nor the square
-/// of a tiny one underflows; only the exact zero vector and lengths below 1e-30 fall back.
+/// Returns v / |v|, or `fallback` if v is too short. It first divides by the largest component, so
+/// that squares of huge vectors do not overflow and squares of tiny ones do not underflow. Only
+/// lengths below 1e-30 fall back.
 fn normalize_or(v: vec3<f32>, fallback: vec3<f32>) -> vec3<f32> {
     let a = abs(v);
     let largest = max(a.x, max(a.y, a.z));

@@ -1,4 +1,4 @@
-// What ambient occlusion means for each kind of light.
+// Ambient occlusion for diffuse and specular light.
 //
 // Visibility is the share of the cosine-weighted hemisphere that is not occluded. Diffuse light
 // takes it as it is, or brightened by interreflection; a specular lobe sees only part of the
@@ -57,9 +57,9 @@ fn specular_occlusion_cones(
     return mix(1.0, occlusion, smoothstep(0.01, 0.09, alpha));
 }
 
-/// How much of a reflection survives where a normal map turns it below the horizon of the
-/// geometry: 1 at 0 and above, falling to 0 when r points straight down. `normal` is the
-/// interpolated one, without the normal map.
+/// Returns the share of a reflection that remains when a normal map turns it below the geometric
+/// horizon: 1 at and above the horizon, falling to 0 straight down. `normal` is the interpolated
+/// normal without the normal map.
 fn horizon_occlusion(r: vec3<f32>, normal: vec3<f32>) -> f32 {
     let h = saturate(1.0 + dot(r, normal));
     return h * h;

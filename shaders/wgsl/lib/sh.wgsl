@@ -66,8 +66,8 @@ fn sh_lobe_scale(alpha: f32) -> vec2<f32> {
     return vec2<f32>(1.0) + (1.0 - alpha) * vec2<f32>(band1, band2);
 }
 
-/// Radiance of the environment filtered by the GGX lobe about the unit vector r. What three
-/// bands can show: right for rough surfaces, featureless for smooth ones.
+/// Returns radiance filtered by the GGX lobe around the unit vector r. Three bands are accurate for
+/// rough surfaces and featureless for smooth ones.
 fn specular_sh(sh: array<vec4<f32>, 9>, r: vec3<f32>, alpha: f32) -> vec3<f32> {
     let scale = sh_lobe_scale(alpha);
     return max(evaluate_sh(sh, r, scale.x, scale.y), vec3<f32>(0.0));

@@ -9,8 +9,8 @@ fn warp_depth(depth: f32, exponent: f32) -> f32 {
     return exp(exponent * (2.0 * saturate(depth) - 1.0));
 }
 
-/// What a map holds where a surface at this depth is drawn; `dx` and `dy` are how depth changes to
-/// the next texels, whose spread is part of the variance.
+/// Returns the moments of a surface at this depth; `dx` and `dy` are its screen derivatives, whose
+/// spread adds to the variance.
 fn depth_moments(depth: f32, dx: f32, dy: f32, exponent: f32) -> vec2<f32> {
     let warped = warp_depth(depth, exponent);
     let slope = 2.0 * exponent * warped * vec2<f32>(dx, dy);

@@ -8,7 +8,7 @@ import package::lib::ggx::{
 };
 import package::lib::real::{real, real3};
 
-/// What the reflection of a light depends on, apart from the light.
+/// Surface parameters of the BRDF that do not depend on the light.
 struct StandardSurface {
     /// Unit shading normal.
     normal: real3,

@@ -1,4 +1,4 @@
-// Where a color is found in a table whose axes are logarithmic.
+// Coordinates of colors in tables with logarithmic axes.
 
 import package::lib::grading::log_c_from_linear;
 
