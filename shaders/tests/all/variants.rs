@@ -82,7 +82,7 @@ pub fn all() -> &'static (Vec<Variant>, Vec<String>) {
     &ALL
 }
 
-/// The same, anew.
+/// Resolves the same variant again.
 pub fn resolve_all() -> (Vec<Variant>, Vec<String>) {
     let (mut variants, mut failures) = (Vec::new(), Vec::new());
     for pass in library::passes() {

@@ -31,7 +31,7 @@ fn pixels_per_m(distance_m: f32) -> f32 {
 }
 
 /// Returns pre-exposed radiance behind a refractive object. The ray entered at `world` and leaves
-/// the object of index `ior` after `path`. `spread` is an angle in radians: x is applied over the
+/// the object of index `ior` after `path`. `spread_rad` is an angle: x is applied over the
 /// distance from the exit point, y from the eye. Inside the object the spread is divided by the
 /// index. If the image shows a surface in front of the object, the ray continues straight.
 fn radiance_behind(

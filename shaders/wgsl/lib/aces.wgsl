@@ -1,16 +1,17 @@
-// ACES as Filament computes it: the reference rendering transform with its glow, its red modifier
-// and its desaturation, then one rational curve in place of tone scale and display transform, and
-// the correction for a dim surround (Academy Color Encoding System 1.0, TB-2014). The white is
-// that of ACES, to which nothing is adapted: it ends at 252, 246, 237 of 255.
+// ACES as computed by Filament: the reference rendering transform with its glow, red modifier and
+// desaturation. One rational curve replaces tone scale and display transform, followed by the
+// correction for a dim surround (Academy Color Encoding System 1.0, TB-2014). The white of ACES is
+// not adapted, so white becomes 252, 246, 237 of 255.
 
-/// Saturation of a color of ACES' AP0 primaries, 0…1, as RRT defines it.
+/// Returns the saturation of a color in ACES' AP0 primaries, 0…1, as RRT defines it.
 fn aces_saturation(ap0: vec3<f32>) -> f32 {
     let most = max(ap0.x, max(ap0.y, ap0.z));
     let least = min(ap0.x, min(ap0.y, ap0.z));
     return (max(most, 1e-5) - max(least, 1e-5)) / max(most, 1e-2);
 }
 
-/// What RRT's glow adds to a dark saturated color of AP0, as a share of it: at most 0.05.
+/// Returns the relative brightness that RRT's glow adds to a dark saturated color of AP0: at most
+/// 0.05.
 fn aces_glow(ap0: vec3<f32>, saturation: f32) -> f32 {
     let c = ap0;
     let chroma2 = c.z * (c.z - c.y) + c.y * (c.y - c.x) + c.x * (c.x - c.z);
@@ -18,11 +19,11 @@ fn aces_glow(ap0: vec3<f32>, saturation: f32) -> f32 {
     let from_knee = (saturation - 0.4) / 0.2;
     let t = max(1.0 - abs(from_knee * 0.5), 0.0);
     let gain = 0.05 * (0.5 + 0.5 * sign(from_knee) * (1.0 - t * t));
-    // All of it below two thirds of the middle brightness of 0.08, none above twice that.
+    // Full gain below two thirds of the middle brightness of 0.08, none above twice that.
     return gain * clamp(0.08 / max(brightness, 1e-6) - 0.5, 0.0, 1.0);
 }
 
-/// How red the hue of a color of AP0 is: 1 at pure red, 0 from 67.5 degrees on.
+/// Returns the redness of a hue in AP0: 1 at pure red, 0 from 67.5 degrees on.
 fn aces_redness(ap0: vec3<f32>) -> f32 {
     let aside = 1.7320508 * (ap0.y - ap0.z);
     let along = 2.0 * ap0.x - ap0.y - ap0.z;
@@ -33,7 +34,7 @@ fn aces_redness(ap0: vec3<f32>) -> f32 {
     return select(weight * weight, 0.0, is_grey);
 }
 
-/// Rec.2020 light of the scene to Rec.2020 light of a display; `brightness` is 1, or 1/0.6 for
+/// Tone maps scene light to display light, both in Rec.2020; `brightness` is 1, or 1/0.6 for
 /// Filament's ACES_LEGACY.
 fn tone_aces(color: vec3<f32>, brightness: f32) -> vec3<f32> {
     let c = clamp(color, vec3<f32>(0.0), vec3<f32>(65504.0));
@@ -53,7 +54,7 @@ fn tone_aces(color: vec3<f32>, brightness: f32) -> vec3<f32> {
     let luminance_ap1 = vec3<f32>(0.27222872, 0.67408177, 0.05368952);
     let x = mix(vec3<f32>(dot(ap1, luminance_ap1)), ap1, 0.96) * brightness;
     let fit = (x * (2.785085 * x + 0.107772)) / (x * (2.936045 * x + 0.887122) + 0.806889);
-    // Luminance to the power 0.9811 for a dim surround, with the chromaticity left as it is.
+    // Luminance to the power 0.9811 for a dim surround, at constant chromaticity.
     let y = dot(fit, luminance_ap1);
     let dim = fit * pow(max(y, 1e-10), -0.0189);
     let shown = mix(vec3<f32>(dot(dim, luminance_ap1)), dim, 0.93);

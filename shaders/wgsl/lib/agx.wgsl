@@ -1,11 +1,11 @@
-// AgX (Sobotka, 2022): a sigmoid of the logarithm in primaries drawn toward the middle, so that
-// bright colors turn pale as film does.
+// AgX (Sobotka, 2022): a sigmoid of the logarithm in inset primaries, so that bright colors
+// desaturate as on film.
 
 const AGX_PLAIN: u32 = 0u;
 const AGX_GOLDEN: u32 = 1u;
 const AGX_PUNCHY: u32 = 2u;
 
-/// Wrensch's polynomial for the sigmoid of AgX over its logarithmic range, 0…1 to 0…1.
+/// Evaluates Wrensch's polynomial for the sigmoid of AgX over its logarithmic range, 0…1 to 0…1.
 fn agx_sigmoid(x: vec3<f32>) -> vec3<f32> {
     let x2 = x * x;
     let x4 = x2 * x2;
@@ -13,7 +13,7 @@ fn agx_sigmoid(x: vec3<f32>) -> vec3<f32> {
     return 0.002857 + odd + x2 * (4.361 + 92.06 * x2 + 78.01 * x4);
 }
 
-/// What a look does to AgX's encoded color: slope, power and saturation.
+/// Applies a look to AgX's encoded color: slope, power and saturation.
 fn agx_look(color: vec3<f32>, look: u32) -> vec3<f32> {
     var slope = vec3<f32>(1.0);
     var power = 1.0;
@@ -31,8 +31,8 @@ fn agx_look(color: vec3<f32>, look: u32) -> vec3<f32> {
     return luma + saturation * (graded - luma);
 }
 
-/// Rec.2020 light of the scene to Rec.2020 light of a display, with Blender's matrices: ten stops
-/// below 18 % grey to six and a half above.
+/// Tone maps scene light to display light, both in Rec.2020, with Blender's matrices: ten stops
+/// below 18 % gray to six and a half above.
 fn tone_agx(color: vec3<f32>, look: u32) -> vec3<f32> {
     let c = clamp(color, vec3<f32>(0.0), vec3<f32>(65504.0));
     let inset = vec3<f32>(

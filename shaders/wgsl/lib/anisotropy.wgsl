@@ -11,23 +11,23 @@ import package::lib::math::PI;
 import package::lib::ggx::SQUARE_SCALE;
 import package::lib::real::{real, real2, real3};
 
-/// alpha along tangent and bitangent from an isotropic one and an anisotropy in [-1, 1]:
-/// positive stretches the highlight along the bitangent. Each is held within [floor, 1].
+/// Returns alpha along tangent and bitangent, for an isotropic alpha and an anisotropy in [-1, 1].
+/// Positive values stretch the highlight along the bitangent. Both are clamped to [floor, 1].
 fn anisotropic_alpha(alpha: real, anisotropy: real, floor: real) -> real2 {
     let a = clamp(anisotropy, -1.0, 1.0);
     return clamp(alpha * real2(1.0 + a, 1.0 - a), real2(floor), real2(1.0));
 }
 
-/// The same as KHR_materials_anisotropy has it: strength in [0, 1] roughens the direction of
-/// anisotropy, given as the tangent, and leaves the other alone.
+/// Returns alpha along tangent and bitangent, as specified in KHR_materials_anisotropy. A strength
+/// in [0, 1] increases the roughness along the tangent, the direction of anisotropy.
 fn gltf_anisotropic_alpha(alpha: real, strength: real, floor: real) -> real2 {
     let s = saturate(strength);
     let along_tangent = mix(alpha, 1.0, s * s);
     return clamp(real2(along_tangent, alpha), real2(floor), real2(1.0));
 }
 
-/// Anisotropic GGX distribution of the half vector, in 1/sr. Finite where there is none: no
-/// alpha of roughness 0.045 or more reaches the floor.
+/// Evaluates the anisotropic GGX distribution of the half vector, in 1/sr. Always finite; no alpha
+/// of roughness 0.045 or more reaches the floor.
 fn d_ggx_anisotropic(alpha: real2, toh: real, boh: real, noh: real) -> f32 {
     let a = vec2<f32>(alpha);
     let area = a.x * a.y;
@@ -36,19 +36,19 @@ fn d_ggx_anisotropic(alpha: real2, toh: real, boh: real, noh: real) -> f32 {
     return area * w * w * (1.0 / PI);
 }
 
-/// Height-correlated Smith visibility of the stretched lobe. `v` and `l` are the directions to
-/// viewer and light as (t, b, n) components, n ≥ 1e-4 for the viewer and > 0 for the light.
+/// Evaluates height-correlated Smith visibility of the anisotropic lobe. `v` and `l` are the
+/// directions to viewer and light as (t, b, n) components, n ≥ 1e-4 for the viewer and > 0 for the
+/// light.
 fn v_smith_ggx_correlated_anisotropic(alpha: real2, v: real3, l: real3) -> real {
     let lambda_v = l.z * length(SQUARE_SCALE * real3(alpha * v.xy, v.z));
     let lambda_l = v.z * length(SQUARE_SCALE * real3(alpha * l.xy, l.z));
     return (0.5 * SQUARE_SCALE) / max(lambda_v + lambda_l, SQUARE_SCALE * 7.7e-6);
 }
 
-/// Normal to reflect the viewer about when an isotropic prefiltered environment stands in for
-/// an anisotropic lobe: bent toward the plane of viewer and `across`, the more so the rougher.
-/// `across` is the unit direction of the lower roughness: the bitangent for a positive
-/// anisotropy, the tangent for a negative one. Not normalized. A viewer along `across` has no
-/// such plane; there the normal stays.
+/// Returns the normal for reflection from an isotropic prefiltered environment, not normalized. It
+/// is bent toward the plane of view direction and `across`, more for rougher surfaces. `across` is
+/// the unit direction of the lower roughness: the bitangent for a positive anisotropy, the tangent
+/// for a negative one. For a view along `across` the normal is unchanged.
 fn anisotropic_bent_normal(
     n: vec3<f32>,
     across: vec3<f32>,

@@ -1,7 +1,7 @@
 // Clear coat: a thin dielectric layer over the standard surface, of index 1.5, so f0 = 0.04.
 //
-// The coat's lobe is GGX with Kelemen's visibility. What passes it is attenuated by
-// 1 - F(coat), and the layer below meets the coat instead of air, which lowers its f0.
+// The coat's lobe is GGX with Kelemen's visibility. Light below is attenuated by 1 - F(coat). The
+// base borders the coat instead of air, which lowers its f0.
 
 import package::lib::real::{real, real3};
 
@@ -14,23 +14,24 @@ fn v_kelemen(loh: real) -> real {
     return v * v;
 }
 
-/// f0 of a layer under a coat of index 1.5, from its f0 in air. With s = √f0 the index is
-/// (1 + s)/(1 - s); put into Fresnel's formula against 1.5 the poles cancel and
-/// ((5s - 1)/(5 - s))² remains, which needs no guard at f0 = 1 (hard case 15).
+/// Returns f0 of a layer under a coat of index 1.5, from its f0 in air. With s = √f0 the index is
+/// (1 + s)/(1 - s). In Fresnel's formula against 1.5, the poles cancel to ((5s - 1)/(5 - s))²,
+/// which needs no guard at f0 = 1 (hard case 15).
 fn f0_under_clear_coat(f0: real3) -> real3 {
     let s = sqrt(saturate(f0));
     let r = (5.0 * s - 1.0) / (5.0 - s);
     return r * r;
 }
 
-/// The same by Filament's cubic, for the low preset: no square root; within 0.022 for f0
-/// above 0.04, and zero where the exact value rises again below that.
+/// Returns f0 under the coat by Filament's cubic, without a square root, for the low preset. The
+/// error is at most 0.022 for f0 above 0.04; below that it returns zero where the exact value rises
+/// again.
 fn f0_under_clear_coat_fast(f0: real3) -> real3 {
     return saturate(f0 * (f0 * (0.941892 - 0.263008 * f0) + 0.346479) - 0.0285998);
 }
 
-/// Perceptual roughness of the layer below: light passes the coat twice, so the layer cannot
-/// look smoother than it. `strength` of the coat in [0, 1] blends.
+/// Returns the perceptual roughness of the base as seen through the coat. Light passes the coat
+/// twice, so the base cannot look smoother than the coat. `strength` in [0, 1] blends.
 fn roughness_under_clear_coat(base: real, coat: real, strength: real) -> real {
     return mix(base, max(base, coat), strength);
 }

@@ -1,10 +1,10 @@
-// Shadow of a dominant light from what the picture shows, by a cone toward it (Doghramachi,
-// "Lighting Technology of The Last of Us Part II", 2020).
+// Shadow of a dominant light from screen-space depth, by a cone toward it (Doghramachi, "Lighting
+// Technology of The Last of Us Part II", 2020).
 
-/// How much of a slice of the cone the picture fills, 0…1. The slice is `radius_m` wide about the
-/// cone's axis, which is `axis_m` from the eye; it is looked at `across` (-1…1) of its radius from
-/// the axis, where the picture shows something `scene_m` from the eye. Less than `bias_m` fills
-/// nothing; what is farther in front of the cone than `contact_m` is taken not to touch it.
+/// Returns the share of a cone slice that the visible surface fills, 0…1. The slice has radius
+/// `radius_m` and its axis is `axis_m` from the eye. The sample is at `across` (-1…1) of the radius
+/// from the axis, with the surface `scene_m` from the eye. Less than `bias_m` counts as empty;
+/// surfaces more than `contact_m` in front of the cone are ignored.
 fn cone_slice(
     axis_m: f32,
     scene_m: f32,

@@ -21,10 +21,10 @@ fn specular_albedo(f0: real3, f90: real, dfg: real2) -> real3 {
     return mix(real3(f90 * dfg.x), real3((f90 - 1.0) * dfg.x + dfg.y), f0);
 }
 
-/// Factor that gives back the energy lost between microfacets, 1 + f0·(1/y - 1): exact for
-/// f0 = 1, within 2 % in the mean below (Turquin, "Practical multiple scattering
-/// compensation for microfacet models", 2019). y cannot lie below 1 - ln 2 = 0.307, so a
-/// smaller value is a broken table and is held at 0.3 (hard case 13).
+/// Returns the factor that compensates for energy lost in multiple scattering, 1 + f0·(1/y - 1). It
+/// is exact for f0 = 1, and within 2 % on average below (Turquin, "Practical multiple scattering
+/// compensation for microfacet models", 2019). y is at least 1 - ln 2 = 0.307 in a valid table;
+/// smaller values are clamped to 0.3 (hard case 13).
 fn energy_compensation(f0: real3, dfg_y: real) -> real3 {
     return real3(1.0) + f0 * (1.0 / clamp(dfg_y, 0.3, 1.0) - 1.0);
 }

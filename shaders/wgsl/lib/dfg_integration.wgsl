@@ -1,4 +1,4 @@
-// What a texel of the DFG table holds, by Monte Carlo integration.
+// Monte Carlo integration of the DFG table.
 
 import package::lib::cloth::{d_charlie, v_neubelt};
 import package::lib::ggx::{v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
@@ -8,9 +8,9 @@ import package::lib::sampling::{
     hammersley, sample_half_hemisphere, g1_smith_ggx, sample_visible_normal,
 };
 
-/// (∫ D·V·Fc·cos, ∫ D·V·cos) of the GGX lobe for one view direction, with Fc = (1 - voh)⁵, by
-/// `samples` visible normals: sampling what is seen leaves only G2/G1 and Fresnel to chance.
-/// nov and roughness must be above zero.
+/// Integrates (∫ D·V·Fc·cos, ∫ D·V·cos) of the GGX lobe for one view direction, with Fc = (1 -
+/// voh)⁵. It samples visible normals, so that only G2/G1 and Fresnel add noise. nov and roughness
+/// must be above zero.
 fn dfg_ggx(nov: f32, roughness: f32, fast_visibility: bool, samples: u32) -> vec2<f32> {
     let alpha = roughness * roughness;
     let view = vec3<f32>(sqrt(max(1.0 - nov * nov, 0.0)), 0.0, nov);
@@ -35,9 +35,9 @@ fn dfg_ggx(nov: f32, roughness: f32, fast_visibility: bool, samples: u32) -> vec
     return sum / f32(samples);
 }
 
-/// ∫ D·V·cos of the cloth lobe for one view direction, by half vectors uniform over the
-/// hemisphere: Charlie's peak lies at the horizon, where sampling by D gains little. The
-/// Jacobian from h to l is 4·voh.
+/// Integrates ∫ D·V·cos of the cloth lobe for one view direction, by half vectors uniform over the
+/// hemisphere. Charlie's peak is at the horizon, where sampling by D gains little. The Jacobian
+/// from h to l is 4·voh.
 fn dfg_cloth(nov: f32, roughness: f32, samples: u32) -> f32 {
     let alpha = roughness * roughness;
     let view = vec3<f32>(sqrt(max(1.0 - nov * nov, 0.0)), 0.0, nov);

@@ -1,4 +1,4 @@
-// A color for each stop of brightness, to see how much range a picture uses.
+// False colors: one color per stop of brightness, to show the dynamic range of an image.
 
 /// Colors of whole numbers of stops from -5 about 18 % grey: black, blues, cyan at grey, greens
 /// above, yellow, red, magenta, white at ten.

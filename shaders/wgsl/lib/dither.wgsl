@@ -9,9 +9,9 @@ fn interleaved_gradient_noise(pixel: vec2<f32>, frame: u32) -> f32 {
     return fract(52.9829189 * fract(dot(p, vec2<f32>(0.06711056, 0.00583715))));
 }
 
-/// Offset to add to an encoded value that will be rounded to `levels` codes (255 for 8 bits):
-/// the noise, uniform within half a code either way. Of the patterns measured this leaves the
-/// least banding, 0.015 codes RMS after a low pass; no dither leaves 0.287.
+/// Returns the offset to add to an encoded value before quantization to `levels` steps (255 for 8
+/// bits): noise, uniform within ± half a step. It has the least banding of the measured patterns,
+/// 0.015 steps RMS after a low-pass filter, against 0.287 without dither.
 fn dither_offset(pixel: vec2<f32>, frame: u32, levels: f32) -> f32 {
     return (interleaved_gradient_noise(pixel, frame) - 0.5) / levels;
 }

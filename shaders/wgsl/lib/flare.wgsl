@@ -1,4 +1,4 @@
-// Lens flare in the picture's own space (Chapman, "Pseudo Lens Flare", 2017), as Filament has it.
+// Screen-space lens flare (Chapman, "Pseudo Lens Flare", 2017), as in Filament.
 
 /// 1 at `middle`, falling smoothly to 0 at `reach` on both sides.
 fn flare_ring(x: f32, middle: f32, reach: f32) -> f32 {
@@ -6,20 +6,20 @@ fn flare_ring(x: f32, middle: f32, reach: f32) -> f32 {
     return 1.0 - t * t * (3.0 - 2.0 * t);
 }
 
-/// Where ghost `number` of what is seen at `uv` comes from, in 0…1.
+/// Returns the source position of ghost `number` at `uv`, in 0…1.
 fn ghost_place(uv: vec2<f32>, spacing: f32, number: f32) -> vec2<f32> {
     let mirrored = 1.0 - uv;
     return fract(mirrored + (0.5 - mirrored) * spacing * number);
 }
 
-/// Unit vector toward the middle of a picture that is `aspect` times as wide as high, in its own
-/// coordinates. Off the middle by a ten-thousandth, where it would have no direction.
+/// Returns the unit vector toward the center of an image with this aspect ratio, in texture
+/// coordinates. An offset of 1e-4 avoids the zero vector at the center.
 fn flare_direction(uv: vec2<f32>, aspect: f32) -> vec2<f32> {
     let v = (0.5001 - uv) * vec2<f32>(aspect, 1.0);
     return v * inverseSqrt(max(dot(v, v), 1e-12)) * vec2<f32>(1.0 / aspect, 1.0);
 }
 
-/// Noise of 256 cells a unit, 0.5…1, smooth in between: Filament has a texture of random numbers.
+/// Returns noise with 256 cells per unit, 0.5…1, smooth in between; Filament uses a noise texture.
 fn starburst_noise(x: f32) -> f32 {
     let at = fract(x) * 256.0 - 0.5;
     let cell = floor(at);
@@ -27,8 +27,8 @@ fn starburst_noise(x: f32) -> f32 {
     return 0.5 + 0.5 * mix(hash.x, hash.y, at - cell);
 }
 
-/// Share of the flare that is left at `uv`: rays about the middle, which is whole; they turn with
-/// the camera.
+/// Returns the share of the flare that remains at `uv`: star rays around the center, which rotate
+/// with the camera.
 fn starburst(uv: vec2<f32>, turn: f32) -> f32 {
     let v = uv - 0.5001;
     let d = length(v);

@@ -9,14 +9,14 @@ fn f_schlick(f0: real3, f90: real, voh: real) -> real3 {
     return f0 + (real3(f90) - f0) * pow5(1.0 - saturate(voh));
 }
 
-/// The same for one channel.
+/// Evaluates Schlick's approximation for one channel.
 fn f_schlick_scalar(f0: real, f90: real, voh: real) -> real {
     return f0 + (f90 - f0) * pow5(1.0 - saturate(voh));
 }
 
-/// Reflectance at grazing for an f0: one for every real material, fading out below f0 = 0.02,
-/// which no material has and artists use to say "no specular" (Lagarde and de Rousiers,
-/// "Moving Frostbite to PBR", 2014, section 3.1.3).
+/// Returns the reflectance at grazing incidence for an f0. It is one for every real material and
+/// fades out below f0 = 0.02. Only artists use such values, to disable specular reflection (Lagarde
+/// and de Rousiers, "Moving Frostbite to PBR", 2014, section 3.1.3).
 fn f90_from_f0(f0: real3) -> real {
     return saturate(dot(f0, real3(16.5)));
 }

@@ -4,15 +4,15 @@
 // (McGuire), which grows with contrast instead of with the shallowness of the edge. Lumas are
 // Rec.709 sums of sRGB encoded values at the four corners of the pixel, half a texel out.
 
-/// Whether the contrast is worth filtering: the range of lumas against a share of the
-/// brightest, but at least `threshold_min`. Flat areas leave here, before any direction of
-/// length zero is normalized (hard case 50).
+/// Returns true if the contrast is high enough to filter. The range of lumas must exceed a share of
+/// the brightest, and at least `threshold_min`. Flat areas stop here, before a zero direction is
+/// normalized (hard case 50).
 fn fxaa_is_edge(luma_min: f32, luma_max: f32, threshold: f32, threshold_min: f32) -> bool {
     return luma_max - luma_min >= max(threshold_min, luma_max * threshold);
 }
 
-/// Unit direction along the edge in texels, y downward, or zero where opposite corners
-/// balance: a one-pixel line has contrast but no direction and stays as it is.
+/// Returns the unit direction along the edge in texels, y downward. It is zero if opposite corners
+/// balance: a one-pixel line has no direction and stays unchanged.
 fn fxaa_direction(nw: f32, ne: f32, sw: f32, se: f32) -> vec2<f32> {
     let rising = sw - ne;
     let falling = se - nw;
@@ -24,7 +24,7 @@ fn fxaa_direction(nw: f32, ne: f32, sw: f32, se: f32) -> vec2<f32> {
     return d * inverseSqrt(length2);
 }
 
-/// How far out the second pair of taps lies, in texels, at most 6: farther for more contrast.
+/// Returns the distance of the second tap pair, in texels, at most 6 and larger for more contrast.
 /// `direction` is a unit vector, `range` = luma_max - luma_min, `sharpness` = 8 by default.
 fn fxaa_span_texels(direction: vec2<f32>, range: f32, sharpness: f32) -> f32 {
     let largest = max(abs(direction.x), abs(direction.y));

@@ -1,14 +1,14 @@
-// Colors that a display cannot show, moved to the nearest of the same hue.
+// Gamut mapping: colors outside the display's gamut, mapped at constant hue.
 
 import package::lib::primaries::{oklab_from_rec709, rec709_from_oklab};
 
-/// How far a channel may lie beyond 0…1 before it counts as outside: grading leaves that much.
+/// Tolerance by which a channel may exceed 0…1 before gamut mapping applies; grading needs it.
 const GAMUT_SLACK: f32 = 0.03;
 
-/// Linear Rec.709 within 0…1, but for GAMUT_SLACK. What lies outside is moved in OkLab, at its
-/// hue, along the line toward a grey, to where the line enters the gamut. The grey is Ottosson's
-/// "adaptive L0" about 0.5 with alpha 0.05 ("sRGB gamut clipping", 2021): near the color's own
-/// lightness, and nearer to the middle the more colorful it is.
+/// Maps linear Rec.709 into 0…1 within GAMUT_SLACK. Colors outside move in OkLab, at constant hue,
+/// along the line toward a gray, until they enter the gamut. The gray is Ottosson's "adaptive L0"
+/// around 0.5 with alpha 0.05 ("sRGB gamut clipping", 2021). It is near the color's lightness, and
+/// closer to the middle for more colorful colors.
 fn map_into_gamut(color: vec3<f32>) -> vec3<f32> {
     let least = min(color.x, min(color.y, color.z));
     let most = max(color.x, max(color.y, color.z));

@@ -10,15 +10,15 @@
 import package::lib::math::PI;
 import package::lib::real::{real, real3};
 
-/// Factor on sines and cosines that are squared, taken out again. Squares of less than 0.0078
-/// are numbers that a half float does not hold in full and some devices make zero of, which at
-/// alpha 0.0079 would make D fifteen times too large.
+/// Scale of sines and cosines before squaring, removed afterwards. Squares of values below 0.0078
+/// are subnormal in half floats, and some devices flush them to zero. At alpha 0.0079 this would
+/// make D fifteen times too large.
 @if(HALF)
 const SQUARE_SCALE: real = 64.0;
 @else
 const SQUARE_SCALE: real = 1.0;
 
-/// What `d_ggx_cross` divides by at least: alpha² at the smallest roughness.
+/// Minimum denominator in `d_ggx_cross`: alpha² at the smallest roughness.
 @if(HALF)
 const D_FLOOR: real = 6.27e-5;
 @else
@@ -31,12 +31,12 @@ fn alpha_from_roughness(roughness: real, floor: real) -> real {
     return r * r;
 }
 
-/// GGX normal distribution, in 1/sr, within [0, 1/(π·alpha²)].
+/// Evaluates the GGX normal distribution in 1/sr, within [0, 1/(π·alpha²)].
 ///
-/// 1 - noh² is formed as (1 - noh)(1 + noh): the subtraction is exact near one, so the result
-/// is good to a few ulp of the given noh, where the textbook form loses 7 % at roughness
-/// 0.045. noh is clamped to one because a dot of rounded unit vectors exceeds it (hard case 3).
-/// Always f32: no form can give back the angle that a half float has rounded out of noh.
+/// 1 - noh² is computed as (1 - noh)(1 + noh). The subtraction is exact near one, so the error is a
+/// few ulp of noh; the textbook form loses 7 % at roughness 0.045. noh is clamped to one, because a
+/// dot product of rounded unit vectors may exceed it (hard case 3). Always f32: a half-float noh
+/// has lost the angle.
 fn d_ggx(noh: f32, alpha: f32) -> f32 {
     let c = clamp(noh, 0.0, 1.0);
     let a = c * alpha;
@@ -44,13 +44,12 @@ fn d_ggx(noh: f32, alpha: f32) -> f32 {
     return k * k * (1.0 / PI);
 }
 
-/// The same distribution from the unit vectors themselves: 1 - noh² = |n × h|² by Lagrange's
-/// identity. In f16, where a rounded noh has lost the angle altogether, this form is good to
-/// 1 % at roughness 0.089; in f32 it gains little over the one above. The result is at most
-/// 65464, which a half float holds: reached below roughness 0.047 only. The last product is f32,
-/// since a GPU may compute k · k first, which a half float does not hold. At the horizon and
-/// below it is what it is there, as in the form above; so also where opposite vectors leave no
-/// h, whose cross product with anything is none, as that of n itself is at the peak.
+/// Evaluates the GGX distribution from unit vectors, with 1 - noh² = |n × h|² by Lagrange's
+/// identity. In f16, where a rounded noh has lost the angle, this form has an error of 1 % at
+/// roughness 0.089; in f32 it gains little. The result is at most 65464, which fits a half float
+/// and is reached only below roughness 0.047. The last product is f32, because a GPU may compute k
+/// · k first, which overflows half floats. At and below the horizon, the result is that at the
+/// horizon. The same applies to opposite vectors, whose h is zero.
 fn d_ggx_cross(n: real3, h: real3, noh: real, alpha: real) -> real {
     let scale2 = SQUARE_SCALE * SQUARE_SCALE;
     let sine = SQUARE_SCALE * cross(n, h);
@@ -72,9 +71,9 @@ fn v_smith_ggx_correlated(nov: real, nol: real, alpha: real) -> real {
     return (0.5 * SQUARE_SCALE) / max(lambda_v + lambda_l, SQUARE_SCALE * 7.7e-6);
 }
 
-/// Hammon's approximation of `v_smith_ggx_correlated` without square roots: always low, by
-/// 8 % in the mean and at most 28.5 %. It needs a DFG table built with the same V, or the
-/// white furnace breaks twice.
+/// Evaluates Hammon's approximation of `v_smith_ggx_correlated` without square roots. It is always
+/// low, by 8 % on average and at most 28.5 %. It needs a DFG table built with the same V; otherwise
+/// the white furnace test fails twice.
 fn v_smith_ggx_correlated_fast(nov: real, nol: real, alpha: real) -> real {
     let l = SQUARE_SCALE * nol;
     let lambda = mix(2.0 * l * nov, l + SQUARE_SCALE * nov, alpha);

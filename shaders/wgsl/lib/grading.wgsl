@@ -55,22 +55,23 @@ fn saturation(color: vec3<f32>, weights: vec3<f32>, amount: f32) -> vec3<f32> {
     return grey + (color - grey) * amount;
 }
 
-/// Saturation by how red a color is: all of `amount` where red exceeds the other channels by far,
-/// half of it at greys, none where it lies below them, by a logistic curve of slope 3.
+/// Scales saturation by how red a color is, with a logistic curve of slope 3. It applies all of
+/// `amount` if red is much larger than the other channels, half of it to grays, and none if red is
+/// much smaller.
 fn vibrance(color: vec3<f32>, weights: vec3<f32>, amount: f32) -> vec3<f32> {
     let red = clamp(color.x - max(color.y, color.z), -20.0, 20.0);
     return saturation(color, weights, 1.0 + (amount - 1.0) / (1.0 + exp(-3.0 * red)));
 }
 
-/// A curve of one channel: below `middle` a power that meets it there, above it a line.
+/// Evaluates a curve for one channel: a power below `middle`, and a line above it.
 fn toe_and_shoulder(x: f32, gamma: f32, middle: f32, scale: f32) -> f32 {
     // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.
     let toe = positive_power(x, gamma) / pow(middle, gamma - 1.0);
     return select(scale * (x - middle) + middle, toe, x <= middle);
 }
 
-/// A color of the luminance that a tone curve gives to its own, at its hue (Sobotka, "EVILS",
-/// 2021): as saturated as it was while that fits, and then mixed with what is left to white.
+/// Changes a color to the luminance of a tone curve at constant hue (Sobotka, "EVILS", 2021). It
+/// keeps the saturation while the result fits, and mixes the rest with white.
 fn scale_luminance(color: vec3<f32>, weights: vec3<f32>, luminance_out: f32) -> vec3<f32> {
     let peak = max(color.x, max(color.y, color.z));
     // No branch: where conditions read many uniforms, Mesa 22.3's software driver crashes.

@@ -1,6 +1,6 @@
-// The tone curve of Gran Turismo 7 for a display of 250 nits (Yasutomi, Suzuki, Uchimura,
-// "Driving Toward Reality", SIGGRAPH 2025): a curve for each channel, mixed with the same curve of
-// brightness alone at the chroma that the color had. An input of 1 stands for 100 nits.
+// Tone curve of Gran Turismo 7 for a display of 250 nits (Yasutomi, Suzuki, Uchimura, "Driving
+// Toward Reality", SIGGRAPH 2025). It mixes a per-channel curve with the same curve of brightness
+// at the original chroma. An input of 1 represents 100 nits.
 
 /// Codes 0…1 of ST 2084 (PQ) of nits up to 10000.
 fn pq_from_nits(nits: vec3<f32>) -> vec3<f32> {

@@ -6,18 +6,18 @@
 // moments of absorbance over distance bound what lies in front of a distance; the estimate lies
 // between the bounds, by the overestimation.
 
-/// Absorbance of what hides all behind it: e^-10 would be let through.
+/// Absorbance of an opaque surface, with a transmittance of e^-10.
 const OPAQUE_ABSORBANCE: f32 = 10.0;
 
-/// Total absorbance below which nothing is hidden.
+/// Total absorbance below which surfaces count as fully transparent.
 const LEAST_ABSORBANCE: f32 = 0.001;
 
-/// Absorbance of a surface of this alpha, 0…10.
+/// Returns the absorbance of a surface with this alpha, 0…10.
 fn absorbance(alpha: f32) -> f32 {
     return min(-log(max(1.0 - alpha, 1e-5)), OPAQUE_ABSORBANCE);
 }
 
-/// What is let through by surfaces of this absorbance in total.
+/// Returns the transmittance of surfaces with this total absorbance.
 fn transmittance_of(total: f32) -> f32 {
     return select(exp(-max(total, 0.0)), 0.0, total >= OPAQUE_ABSORBANCE);
 }
@@ -34,7 +34,7 @@ fn power_moments(at: f32) -> vec4<f32> {
     return vec4<f32>(at, square, square * at, square * square);
 }
 
-/// A number that can be divided by: `x`, or what is as small as `least` with its sign.
+/// Returns `x` if its magnitude is at least `least`; otherwise `least` with the sign of `x`.
 fn divisor(x: f32, least: f32) -> f32 {
     return select(x, select(least, -least, x < 0.0), abs(x) < least);
 }

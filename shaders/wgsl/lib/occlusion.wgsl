@@ -1,4 +1,4 @@
-// What ambient occlusion means for each kind of light.
+// Ambient occlusion for diffuse and specular light.
 //
 // Visibility is the share of the cosine-weighted hemisphere that is not occluded. Diffuse light
 // takes it as it is, or brightened by interreflection; a specular lobe sees only part of the
@@ -19,17 +19,18 @@ fn gtao_multi_bounce(visibility: f32, albedo: vec3<f32>) -> vec3<f32> {
     return min(max(v, ((v * a + b) * v + c) * v), vec3<f32>(1.0));
 }
 
-/// Specular occlusion from ambient occlusion alone (Lagarde and de Rousiers, "Moving Frostbite
-/// to PBR", 2014, listing 26): rough lobes follow the occlusion, smooth ones ignore it unless
-/// nearly everything is closed.
+/// Returns specular occlusion from ambient occlusion alone (Lagarde and de Rousiers, "Moving
+/// Frostbite to PBR", 2014, listing 26). Rough lobes follow the occlusion; smooth lobes ignore it
+/// unless it is nearly complete.
 fn specular_occlusion(nov: f32, visibility: f32, alpha: f32) -> f32 {
     let open = max(nov + visibility, 0.0);
     return saturate(pow(open, exp2(-16.0 * alpha - 1.0)) - 1.0 + visibility);
 }
 
-/// Solid angle that two spherical caps share, over 2π; caps by the cosines of their half
-/// angles, `cos_distance` between their axes (Oat and Sander, "Ambient Aperture Lighting",
-/// 2007, with a smoothstep between touching and containing).
+/// Returns the solid angle of the intersection of two spherical caps, over 2π. Caps are given by
+/// the cosines of their half angles, `cos_distance` is that between their axes. A smoothstep
+/// interpolates between touching and containing (Oat and Sander, "Ambient Aperture Lighting",
+/// 2007).
 fn spherical_caps_overlap(cos_cap1: f32, cos_cap2: f32, cos_distance: f32) -> f32 {
     let r1 = acos(clamp(cos_cap1, -1.0, 1.0));
     let r2 = acos(clamp(cos_cap2, -1.0, 1.0));
@@ -40,9 +41,9 @@ fn spherical_caps_overlap(cos_cap1: f32, cos_cap2: f32, cos_distance: f32) -> f3
     return smaller * x * x * (3.0 - 2.0 * x);
 }
 
-/// Specular occlusion from a bent normal: the open cone about it against the cone of the lobe
-/// about the reflected direction r (Jiménez et al. 2016). For mirrors, whose cone has no
-/// width, it fades to one between alpha 0.01 and 0.09.
+/// Returns specular occlusion from a bent normal: the intersection of the open cone around it with
+/// the lobe's cone around the reflected direction r (Jiménez et al. 2016). For mirrors, whose cone
+/// has no width, it fades to one between alpha 0.01 and 0.09.
 fn specular_occlusion_cones(
     bent_normal: vec3<f32>,
     r: vec3<f32>,
@@ -57,9 +58,9 @@ fn specular_occlusion_cones(
     return mix(1.0, occlusion, smoothstep(0.01, 0.09, alpha));
 }
 
-/// How much of a reflection survives where a normal map turns it below the horizon of the
-/// geometry: 1 at 0 and above, falling to 0 when r points straight down. `normal` is the
-/// interpolated one, without the normal map.
+/// Returns the share of a reflection that remains when a normal map turns it below the geometric
+/// horizon: 1 at and above the horizon, falling to 0 straight down. `normal` is the interpolated
+/// normal without the normal map.
 fn horizon_occlusion(r: vec3<f32>, normal: vec3<f32>) -> f32 {
     let h = saturate(1.0 + dot(r, normal));
     return h * h;

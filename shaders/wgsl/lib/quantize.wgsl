@@ -1,4 +1,4 @@
-// What a texture keeps of a color: rounding to small floating-point formats.
+// Quantization: rounding to the small floating-point formats of textures.
 //
 // Drivers round differently when they store: most to nearest with ties to even, some (Mesa's
 // software rasterizers) toward zero. Both are offered; which one a device does is measured.
@@ -23,7 +23,7 @@ fn quantize_mantissa(x: f32, bits: u32, toward_zero: bool) -> f32 {
     return select(round(scaled), trunc(scaled), toward_zero) * spacing;
 }
 
-/// What an Rgba16Float texture keeps of a color; values beyond its range become the largest.
+/// Quantizes a color as an Rgba16Float texture does; values out of range are clamped.
 fn quantize_rgba16float(color: vec4<f32>, toward_zero: bool) -> vec4<f32> {
     let c = clamp(color, vec4<f32>(-FLOAT16_MAX), vec4<f32>(FLOAT16_MAX));
     return vec4<f32>(
@@ -34,8 +34,8 @@ fn quantize_rgba16float(color: vec4<f32>, toward_zero: bool) -> vec4<f32> {
     );
 }
 
-/// What an Rg11b10Ufloat texture keeps of a color: six, six and five bits, no negatives, and
-/// an alpha of one.
+/// Quantizes a color as an Rg11b10Ufloat texture does: six, six and five mantissa bits, no negative
+/// values, and an alpha of one.
 fn quantize_rg11b10ufloat(color: vec3<f32>, toward_zero: bool) -> vec4<f32> {
     let c = clamp(color, vec3<f32>(0.0), vec3<f32>(UFLOAT11_MAX, UFLOAT11_MAX, UFLOAT10_MAX));
     return vec4<f32>(

@@ -1,7 +1,8 @@
-// Light that passes through a body: where it leaves, how far it spreads, what is absorbed.
+// Transmission through an object: exit point, spread and absorption.
 //
-// The body under a surface is taken for a sphere of the surface's thickness, as in Filament: a
-// ray that enters at an angle meets less of it, so no path is longer than the body is thick.
+// The object under a surface is approximated by a sphere of the surface's thickness, as in
+// Filament. A ray that enters at an angle has a shorter path, so no path is longer than the
+// thickness.
 
 /// From the point of entry to the point of exit, in the units of `thickness`; zero for a thin
 /// wall, which displaces nothing. `view` points away from the surface toward the viewer; `ior`
@@ -33,27 +34,26 @@ fn transmittance(absorption_per_m: vec3<f32>, distance_m: f32) -> vec3<f32> {
     return exp(-absorption_per_m * distance_m);
 }
 
-/// Standard deviation along one axis, in radians, of the direction of light that passed a rough
-/// interface between air and a body of index `ior`, for small angles: a facet tilted by t bends
-/// the ray by (ior - 1)·t, and a Gaussian of deviation 0.85·alpha holds half of GGX's facets
-/// within the same tilt as GGX does (half of its slopes are below alpha, half of a Gaussian's
-/// below 1.1774 deviations).
+/// Returns the standard deviation along one axis, in radians, of light refracted by a rough
+/// interface between air and index `ior`, for small angles. A facet tilted by t bends the ray by
+/// (ior - 1)·t. A Gaussian of deviation 0.85·alpha has the same median tilt as GGX: half of GGX's
+/// slopes are below alpha, half of a Gaussian's below 1.1774 deviations.
 fn transmission_spread(alpha: f32, ior: f32) -> f32 {
     return 0.849322 * alpha * max(ior - 1.0, 0.0);
 }
 
-/// Standard deviation along one axis, in radians from the eye, of Filament's blur of things behind
-/// a rough body. It depends on the perceptual roughness alone, not on their distance. Level n > 0
-/// of Filament's picture has a deviation of 11/3 √5^(n-1) pixels.
-/// Below an index of 1.5 the blur is less; 0 at 1.
+/// Returns the standard deviation along one axis, in radians from the eye, of Filament's blur
+/// behind a rough refractive surface. It depends only on perceptual roughness, not on distance.
+/// Level n > 0 of Filament's image has a deviation of 11/3 √5^(n-1) pixels. The blur decreases
+/// below an index of 1.5, to 0 at 1.
 fn seen_transmission_spread(roughness: f32, ior: f32) -> f32 {
     let r = roughness * (1.0 - saturate(3.0 / max(ior, 1.0) - 2.0));
     return 0.31622777 * r * r;
 }
 
-/// Level of a pyramid that shows a picture blurred by a Gaussian of `sigma_texels` of level 0.
-/// Each level is made of the one above by the kernel (1 3 3 1)/8, of variance 3/4, and read with
-/// bilinear filtering, of variance 1/6: level n has a variance of about (5/12)·4ⁿ.
+/// Returns the pyramid level for a Gaussian blur of `sigma_texels` texels of level 0. Each level is
+/// filtered with (1 3 3 1)/8, of variance 3/4, and read bilinearly, with variance 1/6. Level n has
+/// a variance of about (5/12)·4ⁿ.
 fn pyramid_lod(sigma_texels: f32) -> f32 {
     return max(log2(max(sigma_texels, 1e-3) * 1.549193), 0.0);
 }

@@ -1,6 +1,5 @@
-// Scalable ambient obscurance as Filament has it (McGuire, Mara and Luebke 2012; Guy, "Ambient
-// occlusion in Filament", 2021): taps on a spiral, each of which obscures by how far it rises over
-// the tangent plane.
+// Scalable ambient obscurance as in Filament (McGuire, Mara and Luebke 2012; Guy, "Ambient
+// occlusion in Filament", 2021). Taps on a spiral obscure by their height above the tangent plane.
 //
 // Lengths count in radii, so that numbers between 0 and 1 are computed in `real`; positions, from
 // which they come, do not fit half floats (hard case 34).
@@ -17,11 +16,11 @@ fn sao_tap_distance(index: f32, noise: f32, per_tap: f32) -> f32 {
     return sq((index + noise + 0.5) * per_tap);
 }
 
-/// Obscurance by what is at `v` (m, from the point) over a surface of unit normal n: falls to 0 at
-/// the radius. What rises less than `bias_m`, or seen from the point less than the angle whose
-/// squared sine is `min_sin2`, obscures nothing.
+/// Returns the obscurance by a point at `v` (m, relative) of a surface with unit normal n; 0 at the
+/// radius. Points obscure nothing below the height `bias_m`, or below the angle whose squared sine
+/// is `min_sin2`.
 fn sao_term(v: vec3<f32>, n: vec3<f32>, radius_m: f32, bias_m: f32, min_sin2: f32) -> f32 {
-    // What is beyond the radius may be beyond half floats too.
+    // Points outside the radius may exceed the range of half floats.
     if !(dot(v, v) < radius_m * radius_m) {
         return 0.0;
     }

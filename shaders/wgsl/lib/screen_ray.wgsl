@@ -1,9 +1,8 @@
-// A ray followed over the picture: how far, in which steps, what it meets, how much that counts.
+// Screen-space ray tracing: length, steps, hits and weights.
 //
-// Texture coordinates and depth as it is stored are linear in each other along the picture of a
-// ray, whatever the projection; so a ray is followed from end to end in steps that are even in the
-// picture (McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing", 2014). z is that of view
-// space: the camera looks along -z.
+// Texture coordinates and stored depth are linear along the screen projection of a ray, for any
+// projection. A ray is therefore traced in equal screen steps (McGuire and Mara, "Efficient GPU
+// Screen-Space Ray Tracing", 2014). z is in view space: the camera looks along -z.
 
 /// Length in m of a ray that stays behind the near plane, at most `reach_m`; 0 where it starts
 /// before that plane. `way_z` is z of its unit direction.
@@ -25,8 +24,7 @@ fn share_in_picture(start: vec2<f32>, way: vec2<f32>, size: vec2<f32>) -> f32 {
     return min(min(share.x, share.y), 1.0);
 }
 
-/// Whether a ray that goes from one z to another meets a surface that fills `thickness_m` behind
-/// its own.
+/// Returns true if a ray between two values of z meets a surface that is `thickness_m` thick.
 fn ray_meets(before_z: f32, here_z: f32, surface_z: f32, thickness_m: f32) -> bool {
     return max(before_z, here_z) >= surface_z - thickness_m
         && min(before_z, here_z) <= surface_z;
@@ -41,20 +39,20 @@ fn share_at_depth(surface: f32, start: f32, way: f32, low: f32, high: f32) -> f3
     return clamp((surface - start) / way, low, high);
 }
 
-/// Whether what was met is not the surface that the ray left: that lies on its own tangent plane
-/// or below, and the ray above it. `met_m` and `ray_m` are heights over the plane.
+/// Returns true if the hit is not on the surface that the ray left, which is at or below its
+/// tangent plane. `met_m` and `ray_m` are heights above this plane.
 fn rises_from_plane(met_m: f32, ray_m: f32) -> bool {
     return ray_m > 0.0 && met_m > 0.5 * ray_m;
 }
 
-/// How much what was met counts after this share of the ray's reach: less over the last twelfth,
-/// so that nothing ends abruptly.
+/// Returns the fade factor of a hit, by the share of the ray's reach; it fades over the last
+/// twelfth.
 fn reach_fade(share: f32) -> f32 {
     return saturate(12.0 * (1.0 - share));
 }
 
-/// How much of a reflection is traced at this perceptual roughness: all of it up to three quarters
-/// of `most`, nothing from there on.
+/// Returns the weight of traced reflections at a perceptual roughness: 1 up to three quarters of
+/// `most`, 0 from `most` on.
 fn roughness_fade(roughness: f32, most: f32) -> f32 {
     return saturate(4.0 * (1.0 - roughness / max(most, 1e-6)));
 }

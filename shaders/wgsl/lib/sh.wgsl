@@ -23,8 +23,8 @@ fn irradiance_sh(sh: array<vec4<f32>, 9>, n: vec3<f32>) -> vec3<f32> {
     return max(evaluate_sh(sh, n, 1.0, 1.0), vec3<f32>(0.0));
 }
 
-/// Irradiance / π from two bands (the first four coefficients): a fifth of the work and up to
-/// 9 % of error under a plain sky, 21 % under a small bright source.
+/// Returns irradiance / π from two bands (the first four coefficients). It costs a fifth, with
+/// errors up to 9 % under a plain sky and 21 % under a small bright source.
 fn irradiance_sh2(sh: array<vec4<f32>, 4>, n: vec3<f32>) -> vec3<f32> {
     let e = sh[0].xyz + sh[1].xyz * n.y + sh[2].xyz * n.z + sh[3].xyz * n.x;
     return max(e, vec3<f32>(0.0));
@@ -66,8 +66,8 @@ fn sh_lobe_scale(alpha: f32) -> vec2<f32> {
     return vec2<f32>(1.0) + (1.0 - alpha) * vec2<f32>(band1, band2);
 }
 
-/// Radiance of the environment filtered by the GGX lobe about the unit vector r. What three
-/// bands can show: right for rough surfaces, featureless for smooth ones.
+/// Returns radiance filtered by the GGX lobe around the unit vector r. Three bands are accurate for
+/// rough surfaces and featureless for smooth ones.
 fn specular_sh(sh: array<vec4<f32>, 9>, r: vec3<f32>, alpha: f32) -> vec3<f32> {
     let scale = sh_lobe_scale(alpha);
     return max(evaluate_sh(sh, r, scale.x, scale.y), vec3<f32>(0.0));

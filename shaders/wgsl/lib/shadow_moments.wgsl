@@ -9,8 +9,8 @@ fn warp_depth(depth: f32, exponent: f32) -> f32 {
     return exp(exponent * (2.0 * saturate(depth) - 1.0));
 }
 
-/// What a map holds where a surface at this depth is drawn; `dx` and `dy` are how depth changes to
-/// the next texels, whose spread is part of the variance.
+/// Returns the moments of a surface at this depth; `dx` and `dy` are its screen derivatives, whose
+/// spread adds to the variance.
 fn depth_moments(depth: f32, dx: f32, dy: f32, exponent: f32) -> vec2<f32> {
     let warped = warp_depth(depth, exponent);
     let slope = 2.0 * exponent * warped * vec2<f32>(dx, dy);
@@ -19,17 +19,17 @@ fn depth_moments(depth: f32, dx: f32, dy: f32, exponent: f32) -> vec2<f32> {
     return vec2<f32>(warped, min(warped * warped + 0.25 * dot(slope, slope), most));
 }
 
-/// Least variance of a receiver's warped depth: a share of its square, and the spread of depth
-/// within a texel, `texel_slope` being how depth changes along the receiver's plane by a texel of
-/// both axes.
+/// Returns the minimum variance of a receiver's warped depth: a share of its square, plus the
+/// spread of depth within a texel. `texel_slope` is the change of depth along the receiver's plane
+/// per texel.
 fn least_variance(warped: f32, exponent: f32, floor_share: f32, texel_slope: vec2<f32>) -> f32 {
     let slope = 2.0 * exponent * warped;
     return warped * warped * floor_share
         + 0.25 * slope * slope * min(dot(texel_slope, texel_slope), 0.01);
 }
 
-/// Share of the light that reaches a receiver of this warped depth at most (Chebyshev's one-sided
-/// inequality), with `bleed` of it taken for light that bled in.
+/// Returns the upper bound of the light that reaches a receiver of this warped depth (Chebyshev's
+/// one-sided inequality), with light bleeding reduced by `bleed`.
 fn moment_visibility(moments: vec2<f32>, warped: f32, least: f32, bleed: f32) -> f32 {
     if warped <= moments.x {
         return 1.0;

@@ -1,13 +1,12 @@
 // Contrast-adaptive sharpening of a texel by its four neighbors.
 //
-// RCAS of AMD's FidelityFX Super Resolution 1.0 (2021): as much of the neighbors is taken away as
-// brings no channel below 0 or above 1, and at most 3/16 of each.
+// RCAS of AMD's FidelityFX Super Resolution 1.0 (2021). It subtracts as much of the neighbors as
+// keeps all channels in 0…1, and at most 3/16 of each neighbor.
 
-/// The most that is taken of a neighbor.
+/// Maximum share that is subtracted of a neighbor.
 const MAX_SHARPENED: f32 = 0.1875;
 
-/// A texel sharpened by the neighbors around it; `strength` from 0 to 1. Channels above 1 are left
-/// as they are.
+/// Sharpens a texel by its four neighbors; `strength` is 0…1. Channels above 1 are unchanged.
 fn sharpened(
     middle: vec3<f32>,
     up: vec3<f32>,

@@ -9,9 +9,9 @@
 
 import package::lib::math::PI;
 
-/// Perez' sky function for three quantities at once, (1 + A·e^(B/cos θ))·(1 + C·e^(D·γ) +
-/// E·cos² γ): θ from the zenith, γ from the sun. cos θ is held at 0.01, above the horizon,
-/// where B/cos θ stays finite.
+/// Evaluates Perez' sky function for three quantities, (1 + A·e^(B/cos θ))·(1 + C·e^(D·γ) + E·cos²
+/// γ), with θ from the zenith and γ from the sun. cos θ is at least 0.01, so that B/cos θ stays
+/// finite.
 fn perez(coefficients: array<vec4<f32>, 5>, cos_theta: f32, cos_gamma: f32) -> vec3<f32> {
     let c = clamp(cos_gamma, -1.0, 1.0);
     let gamma = acos(c);
@@ -23,8 +23,8 @@ fn perez(coefficients: array<vec4<f32>, 5>, cos_theta: f32, cos_gamma: f32) -> v
     return toward_zenith * toward_sun;
 }
 
-/// Linear Rec.709 color from CIE xyY, negative channels clamped to zero. y is held above
-/// 0.001 since it divides.
+/// Converts CIE xyY to linear Rec.709, with negative channels clamped to zero. y is at least 0.001
+/// because it is a divisor.
 fn linear_from_xyy(xyy: vec3<f32>) -> vec3<f32> {
     let scale = xyy.z / max(xyy.y, 1e-3);
     let xyz = vec3<f32>(xyy.x * scale, xyy.z, (1.0 - xyy.x - xyy.y) * scale);
@@ -55,9 +55,9 @@ fn sky_radiance(
     return mix(ground, sky, smoothstep(-0.01, 0.01, d.y));
 }
 
-/// How much of the sun disc covers the unit direction d, in [0, 1]: one inside, fading over
-/// the outer tenth of the radius. The sine of the angle comes from the cross product, because
-/// the cosine of a quarter degree differs from one by only 180 ulp.
+/// Returns the coverage of the unit direction d by the sun disc, in [0, 1], fading over the outer
+/// tenth of the radius. The sine of the angle comes from the cross product, because the cosine of a
+/// quarter degree differs from one by only 180 ulp.
 fn sun_disc(d: vec3<f32>, to_sun: vec3<f32>, sin_radius: f32) -> f32 {
     if dot(d, to_sun) <= 0.0 {
         return 0.0;
@@ -66,11 +66,10 @@ fn sun_disc(d: vec3<f32>, to_sun: vec3<f32>, sin_radius: f32) -> f32 {
     return 1.0 - smoothstep(0.9 * sin_radius, sin_radius, s);
 }
 
-/// Share of the sun's brightness that its disc with a halo shows in the unit direction d, 0…1:
-/// one in the disc, falling to zero at the end of the halo (Filament's skybox). `versine` is
-/// 1 - cos of the disc's angular radius, `per_halo` one over how much larger the halo's is. The
-/// versine of the angle between d and the sun comes from the chord, since a cosine near one has
-/// no digits left for it.
+/// Returns the relative brightness of the sun disc and its halo in the unit direction d: 1 in the
+/// disc, 0 at the end of the halo (Filament's skybox). `versine` is 1 - cos of the disc's angular
+/// radius, `per_halo` the reciprocal of the halo's additional versine. The versine between d and
+/// the sun comes from the chord, because a cosine near one has too few digits.
 fn sun_halo(d: vec3<f32>, to_sun: vec3<f32>, versine: f32, per_halo: f32, falloff: f32) -> f32 {
     let chord = d - to_sun;
     let left = 1.0 - saturate((0.5 * dot(chord, chord) - versine) * per_halo);

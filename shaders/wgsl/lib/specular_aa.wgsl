@@ -5,9 +5,9 @@
 // 2019. The derivatives of the normal give the variance of a Gaussian of slopes, which adds to
 // the lobe's own alpha². Isotropic: on a cylinder it dims the highlight more than it should.
 
-/// Perceptual roughness after filtering. `dndx` and `dndy` are screen derivatives of the
-/// world-space unit normal (before the normal map); `variance` the assumed pixel footprint
-/// (0.15 … 0.25), `threshold` the most that may be added to alpha² (0.18 … 0.2).
+/// Returns the filtered perceptual roughness. `dndx` and `dndy` are screen derivatives of the
+/// world-space unit normal before the normal map. `variance` is the assumed pixel footprint (0.15 …
+/// 0.25), `threshold` the maximum increase of alpha² (0.18 … 0.2).
 fn normal_filtering(
     roughness: f32,
     dndx: vec3<f32>,

@@ -1,8 +1,8 @@
 // The sRGB transfer functions (IEC 61966-2-1:1999).
 //
-// Exact piecewise forms: x^(1/2.2) is off by up to 8.5 of 255 codes and changes 79 % of
-// 8-bit values. Where a hardware sRGB target can do the encoding, let it; the shader does it
-// itself only to dither or to compute FXAA's luma in encoded values.
+// Exact piecewise forms: x^(1/2.2) is off by up to 8.5 8-bit steps and changes 79 % of 8-bit
+// values. Prefer the encoding of a hardware sRGB target. The shader encodes only to dither, or to
+// compute FXAA's luma from encoded values.
 
 /// Linear light in [0, 1] from one encoded channel in [0, 1].
 fn linear_from_srgb_channel(encoded: f32) -> f32 {

@@ -8,7 +8,7 @@ import package::lib::ggx::{
 };
 import package::lib::real::{real, real3};
 
-/// What the reflection of a light depends on, apart from the light.
+/// Surface parameters of the BRDF that do not depend on the light.
 struct StandardSurface {
     /// Unit shading normal.
     normal: real3,
@@ -34,10 +34,9 @@ fn clamp_nov(nov: real) -> real {
     return max(nov, 1e-4);
 }
 
-/// The unit vector half-way between two. Opposite ones leave nothing between them; the floor
-/// keeps the result finite there, and no longer than one (hard case 7). In f32 in every build:
-/// a half float of the squared length is none for vectors half a degree from opposite, and a
-/// vector that is too short would lie at the peak of the distribution.
+/// Returns the unit vector half-way between two unit vectors. The lower limit of the length keeps
+/// the result finite for opposite vectors, and at most 1 (hard case 7). Always f32, because the
+/// squared length of nearly opposite vectors underflows half floats.
 fn half_vector(a: real3, b: real3) -> real3 {
     let sum = vec3<f32>(a) + vec3<f32>(b);
     return real3(sum * inverseSqrt(max(dot(sum, sum), 1e-12)));

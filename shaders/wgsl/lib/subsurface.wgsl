@@ -32,8 +32,8 @@ fn wrapped_cosine(nol: real) -> real {
     return saturate((nol + 0.5) * (1.0 / 2.25));
 }
 
-/// Tint of light that cloth scatters, where the cosine is that of the light or, for light from all
-/// around, of the viewer: the color in the shadow, and white in full light.
+/// Returns the tint of light scattered by cloth: the color in the shadow, white in full light. The
+/// cosine is that of the light or, for ambient light, of the viewer.
 fn cloth_tint(color: real3, cosine: real) -> real3 {
     return saturate(color + saturate(cosine));
 }

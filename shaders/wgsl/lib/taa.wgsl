@@ -33,8 +33,8 @@ fn deviation_of_five(sum: vec3<f32>, squares: vec3<f32>) -> vec3<f32> {
     return sqrt(max(0.2 * squares - mean * mean, vec3<f32>(0.0)));
 }
 
-/// How far from `start` toward `end` a box begins, 0 to 1: 0 inside of it, 1 where the way misses
-/// it. A way without length along an axis counts as one of 1e-5.
+/// Returns the share of the way from `start` to `end` at which a box begins: 0 inside it, 1 if the
+/// line misses it. Zero length along an axis counts as 1e-5.
 fn share_to_box(start: vec3<f32>, end: vec3<f32>, low: vec3<f32>, high: vec3<f32>) -> f32 {
     let way = end - start;
     let safe = select(way, vec3<f32>(1e-5), abs(way) < vec3<f32>(1e-5));
@@ -42,8 +42,8 @@ fn share_to_box(start: vec3<f32>, end: vec3<f32>, low: vec3<f32>, high: vec3<f32
     return clamp(max(entry.x, max(entry.y, entry.z)), 0.0, 1.0);
 }
 
-/// Factor on the share of this frame that keeps flickering out of the sum: 1 where this frame is as
-/// bright as those before (Lottes).
+/// Returns a factor on the weight of this frame that reduces flicker: 1 if its brightness equals
+/// that of the history (Lottes).
 fn steadiness(luma: f32, earlier_luma: f32) -> f32 {
     let alike = 1.0 - abs(luma - earlier_luma) / (0.001 + max(luma, earlier_luma));
     return alike * alike;

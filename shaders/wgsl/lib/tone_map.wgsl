@@ -91,8 +91,8 @@ fn tone_generic(color: vec3<f32>, curve: vec3<f32>) -> vec3<f32> {
     return curve.z * x / (x + curve.y);
 }
 
-/// Whether a curve takes Rec.2020, and gives that: Filament's own do, where Khronos', Hill's,
-/// Narkowicz' and the mobile one are for Rec.709.
+/// Returns true if input and output of a curve are in Rec.2020, as for Filament's own curves.
+/// Khronos', Hill's, Narkowicz' and the mobile curve use Rec.709.
 fn tone_in_rec2020(curve: u32) -> bool {
     return curve >= TONE_MAP_ACES_LEGACY && curve != TONE_MAP_MOBILE;
 }

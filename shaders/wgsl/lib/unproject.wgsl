@@ -1,4 +1,4 @@
-// From depth back to places: positions in view space of what a depth texture holds.
+// Reconstruction of view-space positions from depth.
 //
 // View space: the eye at the origin, x to the right, y up, the camera looks along -z. A central
 // or parallel projection, of a window that may be off the middle, takes (x, y, z) to clip space as
@@ -6,9 +6,9 @@
 //   x' = scale.x·x + slide.x·z + offset.x      z' = depth.x·z + depth.y
 //   y' = scale.y·y + slide.y·z + offset.y      w' = depth.z·z + depth.w
 
-/// The numbers of a projection. Mirrored by `layout::Projection`.
+/// Coefficients of a projection. Mirrored by `layout::Projection`.
 struct Projection {
-    /// What z and w of clip space are made of.
+    /// Coefficients of z and w in clip space.
     depth: vec4<f32>,
     scale: vec2<f32>,
     slide: vec2<f32>,

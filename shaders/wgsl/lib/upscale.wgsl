@@ -3,8 +3,8 @@
 // Twelve texels about a place are weighted by an ellipse that is drawn out along the edge through
 // them. Colors are encoded for a display, 0 to 1.
 
-/// What a texel with its four neighbors tells of the edge through it: the direction in which luma
-/// changes, and in z how straight that is, 0 to 2.
+/// Returns the edge through a texel, estimated from its four neighbors: the direction in which luma
+/// changes, and in z its straightness, 0…2.
 fn edge_of(middle: f32, up: f32, left: f32, right: f32, down: f32) -> vec3<f32> {
     let along = vec2<f32>(right - left, down - up);
     let steep_x = max(abs(right - middle), abs(middle - left));

@@ -15,7 +15,7 @@ fn blend_weight(distance_m: f32) -> f32 {
     return clamp(10.0 / (1e-5 + near * near + far2 * far2 * far2), 1e-2, 3e3) / 32.0;
 }
 
-/// What a fragment adds to the sums: `color` is multiplied by its alpha already.
+/// Returns the fragment's contribution to the sums; `color` is premultiplied by alpha.
 fn weighted_color(color: vec4<f32>, distance_m: f32) -> vec4<f32> {
     let weight = color.a * blend_weight(distance_m);
     return vec4<f32>(min(color.rgb * weight, vec3<f32>(WEIGHTED_MAX)), color.a * weight);

@@ -90,7 +90,7 @@ impl Case {
         text
     }
 
-    /// `count` rows of numbers: first every combination of special values, up to a quarter of
+    /// Deterministic: every call gives the same values.
     /// them, then points spread over the domain. The same every time.
     pub fn inputs(&self, count: usize) -> Vec<f32> {
         let specials: Vec<Vec<Vec<f64>>> = self.parameters.iter().map(|p| p.specials()).collect();
@@ -124,7 +124,7 @@ impl Case {
             // A prime that divides no product of such lengths: each combination comes once before any comes again.
             combine(&lists, (row as u128 * 2_654_435_761 % total as u128) as usize, &mut numbers);
         }
-        // What no half float holds, and is no number, goes in as it is.
+        // NaN and values outside the range of half floats are passed unchanged.
         let rounded = |x: f64| if self.in_half && x.abs() <= FLOAT16_MAX { half_float(x) as f32 } else { x as f32 };
         numbers.into_iter().map(rounded).collect()
     }

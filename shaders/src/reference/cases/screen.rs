@@ -129,7 +129,7 @@ pub(super) const CASES: &[Case] = &[
         "acos_held(x[0])",
         SCALAR,
         |x| vec![gtao::acos_held(x[0])],
-        // That of the polynomial.
+        // Error of the polynomial.
         bound(8e-5, 0.0),
     ),
     case(

@@ -13,7 +13,7 @@ pub(super) const ARITHMETIC: Bound = bound(1e-6, 2e-6);
 pub(super) const HALF_ARITHMETIC: Bound = bound(1e-3, 2e-3);
 /// A power of a number near one, each of its five roundings counted whole, times a difference.
 pub(super) const HALF_FRESNEL: Bound = bound(3e-3, 0.0);
-/// The same bits.
+/// Results must be bit-identical.
 pub(super) const EXACT: Bound = bound(0.0, 0.0);
 
 pub(super) const SCALAR: &[&str] = &["f32(r)"];
