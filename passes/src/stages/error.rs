@@ -22,7 +22,7 @@ pub enum StageError {
         name: &'static str,
     },
     /// A stage needs a texture that no earlier stage set.
-    #[error("stage `{stage}`: needs `{slot}`, which no earlier stage set; set it with `Handles::set`")]
+    #[error("stage `{stage}`: needs `{slot}`, but no earlier stage has set it; call `Handles::set`")]
     Missing {
         /// The stage; `the caller` outside of stages.
         stage: &'static str,
@@ -30,7 +30,9 @@ pub enum StageError {
         slot: &'static str,
     },
     /// A stage set a handle of another frame.
-    #[error("stage `{stage}`: set `{slot}` to a texture of another frame; use one declared after this frame was reset")]
+    #[error(
+        "stage `{stage}`: the texture for `{slot}` is of another frame, or older than the last reset; set one of this frame"
+    )]
     Foreign {
         /// The stage.
         stage: &'static str,
