@@ -16,16 +16,16 @@ use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 use framegraph_scene::{MeshId, Scene};
 use framegraph_wgpu::Gpu;
 
-/// The three buffers that draws share.
+/// Vertex and index buffers that draws share.
 pub(super) struct Vertices {
     pub positions: Buffer,
     pub attributes: Buffer,
     pub indices: Buffer,
-    /// Bytes of the indices that have 32 bits: behind them those that have 16.
+    /// Size of the 32-bit indices in bytes; the 16-bit indices follow.
     pub short_indices_at: u64,
 }
 
-/// Lays all meshes one after another.
+/// Creates buffers with all meshes, one after another.
 pub(super) fn vertices(
     gpu: &Gpu,
     scene: &Scene,
@@ -61,7 +61,7 @@ pub(super) fn vertices(
     }
     let mut bytes: Vec<u8> = cast_slice(&long).to_vec();
     bytes.extend_from_slice(cast_slice(&short));
-    // Buffers are written by fours.
+    // Buffer writes are multiples of four bytes.
     bytes.resize(bytes.len().next_multiple_of(4), 0);
     let vertices = Vertices {
         positions: filled(gpu, scene, "positions", BufferUsages::VERTEX, &positions)?,
@@ -72,9 +72,9 @@ pub(super) fn vertices(
     Ok((vertices, ranges))
 }
 
-/// The factors of all materials as elements of an array, where draws may take them from one.
+/// Creates a packed array of all material uniforms, if indirect draws may use it.
 pub(super) fn material_table(gpu: &Gpu, scene: &Scene) -> Result<Option<Buffer>, UploadError> {
-    // Shorter lists of draws have no arguments.
+    // Shorter draw lists are never indirect.
     if scene.instances.len() < LEAST_BATCHES || !binds_materials(&gpu.device.limits()) {
         return Ok(None);
     }
@@ -82,7 +82,7 @@ pub(super) fn material_table(gpu: &Gpu, scene: &Scene) -> Result<Option<Buffer>,
     Ok(Some(filled(gpu, scene, "material table", BufferUsages::STORAGE, &packed)?))
 }
 
-/// The factors of all materials, each to be bound alone, and the distance between them.
+/// Creates a buffer of all material uniforms, to be bound one by one, and returns their distance.
 pub(super) fn materials(gpu: &Gpu, scene: &Scene) -> Result<(Buffer, u64), UploadError> {
     let alignment = u64::from(gpu.device.limits().min_uniform_buffer_offset_alignment);
     let stride = (size_of::<MaterialUniforms>() as u64).next_multiple_of(alignment);
@@ -95,7 +95,7 @@ pub(super) fn materials(gpu: &Gpu, scene: &Scene) -> Result<(Buffer, u64), Uploa
     Ok((buffer, stride))
 }
 
-/// A buffer of `values`; of one zero element for none, since an empty buffer cannot be bound.
+/// Creates a buffer of `values`. An empty slice gives one zero element, since empty buffers cannot be bound.
 fn filled<T: NoUninit>(
     gpu: &Gpu,
     scene: &Scene,
@@ -123,7 +123,7 @@ fn filled<T: NoUninit>(
     Ok(buffer)
 }
 
-/// Refuses a value over a limit.
+/// Fails if a value exceeds a limit.
 pub(super) fn limit(file: &str, what: Quantity, value: u64, limit: u64) -> Result<(), SceneError> {
     if value <= limit { Ok(()) } else { Err(SceneError::TooLarge { file: file.into(), what, value, limit }) }
 }

@@ -1,4 +1,4 @@
-//! A material in the terms of the shaders: the names of what it binds, the features that it calls for, its factors.
+//! Conversion of a material to shader data: binding names, shader features, uniforms.
 
 use framegraph_scene::material::{
     AlphaMode, EmissiveUnit, Lobe, Lobes, Material, SLOT_COUNT, Subsurface, TransparencyMode,
@@ -16,10 +16,10 @@ use glam::{Vec2, Vec3};
 // The bits of traits follow those of the slots.
 const _: () = assert!(SLOT_COUNT == MATERIAL_SLOTS as usize);
 
-/// Names of the variables of `wgsl/interface/material.wgsl` and of the files of lobes beside it.
+/// Variable names of `wgsl/interface/material.wgsl` and of the lobe files next to it.
 ///
-/// [`GpuScene::material_binding`](super::GpuScene::material_binding) counts them in this order: the factors, a texture and a
-/// sampler for each of [`Material::slots`], and the array of all factors.
+/// [`GpuScene::material_binding`](super::GpuScene::material_binding) uses this order: the uniforms, a texture and a
+/// sampler for each of [`Material::slots`], and the array of all uniforms.
 pub const MATERIAL_BINDINGS: [&str; 2 + 2 * SLOT_COUNT] = [
     "material",
     "base_color_texture",
@@ -63,7 +63,7 @@ pub const MATERIAL_BINDINGS: [&str; 2 + 2 * SLOT_COUNT] = [
     "materials",
 ];
 
-/// The shader features that a material's lobes call for.
+/// Returns the shader features that a material's lobes need.
 pub fn features_of(lobes: Lobes) -> Features {
     let feature = |lobe| match lobe {
         Lobe::ClearCoat => Feature::CLEAR_COAT,
@@ -80,17 +80,17 @@ pub fn features_of(lobes: Lobes) -> Features {
     lobes.iter().map(feature).collect()
 }
 
-/// The bits of textures among [`material_traits`].
+/// Texture bits of [`material_traits`].
 pub const TEXTURE_TRAITS: u32 = (1 << SLOT_COUNT) - 1;
 
-/// The bits of [`material_traits`] of a material that is written anew and keeps the textures of the one before.
+/// Returns the [`material_traits`] of an updated material that keeps its textures.
 pub(super) fn traits_with_textures_of(before: u32, material: &Material) -> u32 {
     let (new, packed) = (material_traits(material), 1 << TRAIT_PACKED_OCCLUSION);
     before & TEXTURE_TRAITS | new & !(TEXTURE_TRAITS | packed) | before & new & packed
 }
 
-/// What a material has, as the constant `MATERIAL_TRAITS` of shaders: a bit for each texture of its
-/// [slots](Material::slots), and those of `layout::TRAIT_*`.
+/// Returns the traits of a material, for the shader constant `MATERIAL_TRAITS`: one bit for each texture of its
+/// [slots](Material::slots), and the bits `layout::TRAIT_*`.
 #[must_use]
 pub fn material_traits(material: &Material) -> u32 {
     let slots = material.slots();
@@ -111,7 +111,7 @@ pub fn material_traits(material: &Material) -> u32 {
     textures.chain(others).filter(|(is, _)| *is).map(|(_, bit)| 1 << bit).sum()
 }
 
-/// The factors of a material and where its textures lie.
+/// Returns the uniforms of a material: its factors and texture mappings.
 #[must_use]
 pub fn material_uniforms(material: &Material) -> MaterialUniforms {
     let map = |slot: Option<TextureSlot>| {
@@ -191,7 +191,7 @@ pub fn material_uniforms(material: &Material) -> MaterialUniforms {
     }
 }
 
-/// Returns what is scattered below the surface, held within the ranges that shaders expect.
+/// Returns the subsurface scattering parameters, clamped to the ranges of the shaders.
 fn subsurface_uniforms(material: &Material) -> SubsurfaceUniforms {
     let Subsurface { color, power, thickness } = material.subsurface.unwrap_or_default();
     SubsurfaceUniforms {
@@ -202,8 +202,8 @@ fn subsurface_uniforms(material: &Material) -> SubsurfaceUniforms {
     }
 }
 
-/// Returns the uniforms of a body or, without a volume, of a wall that neither bends nor absorbs light. Diffuse transmission
-/// shares the body.
+/// Returns the uniforms of a refractive volume or, without one, of a thin wall that neither refracts nor absorbs
+/// light. Diffuse transmission uses the same volume.
 fn transmission_uniforms(material: &Material, map: impl Fn(Option<TextureSlot>) -> TextureMap) -> TransmissionUniforms {
     let wall = material.transmission.map_or_else(Default::default, |transmission| TransmissionUniforms {
         factor: transmission.factor,
@@ -229,7 +229,7 @@ mod tests {
     };
     use glam::Mat3;
 
-    /// Both sides spell KHR_texture_transform out; they must agree.
+    /// Scene and shaders both implement KHR_texture_transform, and must agree.
     #[test]
     fn texture_transforms_agree_with_the_scenes() {
         let transform = UvTransform { offset: Vec2::new(0.3, -0.2), rotation_rad: 0.7, scale: Vec2::new(2.0, 0.5) };
@@ -274,7 +274,7 @@ mod tests {
             assert_eq!(traits(Some(slot(0)), Some(other)), [false, false]);
             assert_eq!(traits(Some(other), Some(other)), [false, true]);
         }
-        // What is written anew may part textures, but not bind others.
+        // An update may use fewer textures, but not others.
         let both = |rough, occlusion| Material {
             metallic_roughness_texture: rough,
             occlusion_texture: occlusion,
@@ -286,7 +286,7 @@ mod tests {
         assert!(has(&packed, &packed) && !has(&packed, &apart) && !has(&apart, &packed));
     }
 
-    /// A lobe's factors and each of its texture slots, told apart by their offsets, are packed where shaders read them.
+    /// The factors and texture slots of a lobe, distinguished by their offsets, are packed where shaders read them.
     #[test]
     fn lobes_are_packed_factor_by_factor_and_slot_by_slot() {
         let slot = |x: f32| {
@@ -364,7 +364,7 @@ mod tests {
         assert_eq!((sheen.color, sheen.roughness), (Vec3::new(0.5, 0.25, 0.125), 0.75));
         assert_eq!((anisotropy.rotation, anisotropy.strength), (Vec2::from_angle(2.0), 0.5));
         assert_eq!((transmission.factor, transmission.ior, transmission.thickness), (0.75, 1.33, 2.0));
-        // The logarithm of the attenuation color over its distance, with the sign turned.
+        // Negative logarithm of the attenuation color, divided by its distance.
         let absorption = Vec3::new(2.0, 4.0, 0.0) * std::f32::consts::LN_2;
         assert!((transmission.absorption - absorption).length() < 1e-5);
         assert_eq!((specular.factor, specular.color), (0.5, Vec3::new(2.0, 1.0, 0.5)));
@@ -390,7 +390,7 @@ mod tests {
         ];
         let expected: [f32; 14] = std::array::from_fn(|i| (i + 1) as f32);
         assert_eq!(maps.map(|map| map.offset.x), expected);
-        // Without refraction the body is that of the scattered light.
+        // Without refraction, the volume is that of diffuse transmission.
         let body = material.transmission.and_then(|t| t.volume);
         let wax = DiffuseTransmission { volume: body, ..DiffuseTransmission::default() };
         let wax = Material { transmission: None, diffuse_transmission: Some(wax), ..material.clone() };

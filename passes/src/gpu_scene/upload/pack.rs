@@ -1,4 +1,4 @@
-//! The scene in the structs that the shaders read: pure functions, no GPU.
+//! Conversion of a scene to shader structs: pure functions, no GPU.
 
 use framegraph_shaders::layout::{
     LightError, LightUniforms, ObjectUniforms, Punctual, VertexAttributes, VertexPosition,
@@ -10,13 +10,13 @@ use framegraph_scene::Instance;
 use framegraph_scene::light::{Light, LightKind};
 use framegraph_scene::mesh::Mesh;
 
-/// The position stream of a mesh, a vertex each.
+/// Returns the position stream of a mesh, one item for each vertex.
 pub fn vertex_positions(mesh: &Mesh) -> impl Iterator<Item = VertexPosition> + '_ {
     mesh.positions.iter().map(|p| VertexPosition { position: p.to_array() })
 }
 
-/// The attribute stream of a mesh, a vertex each. Streams the mesh lacks are absent as the layout
-/// has it: white, zero.
+/// Returns the attribute stream of a mesh, one item for each vertex. Missing attributes have the default of the
+/// layout: white, or zero.
 pub fn vertex_attributes(mesh: &Mesh) -> impl Iterator<Item = VertexAttributes> + '_ {
     let absent = VertexAttributes::default();
     let of = move |i: usize| VertexAttributes {
@@ -29,30 +29,30 @@ pub fn vertex_attributes(mesh: &Mesh) -> impl Iterator<Item = VertexAttributes> 
     (0..mesh.vertex_count()).map(of)
 }
 
-/// The largest half float.
+/// Maximum half float.
 const MAX_HALF: f32 = 65504.0;
 
 fn half_color(value: f32) -> f16 {
     f16::from_f32(value.clamp(0.0, MAX_HALF))
 }
 
-/// Whether a mesh has colors that its vertex format cuts off.
+/// Returns true if a mesh has colors outside the range of its vertex format.
 #[must_use]
 pub fn colors_are_cut(mesh: &Mesh) -> bool {
     mesh.colors.iter().any(|c| c.max_element() > MAX_HALF || c.min_element() < 0.0)
 }
 
-/// How an instance is turned and scaled, and of what material it is. Where its zero point is depends on the eye and is no part of it.
+/// Returns the rotation, scale and material of an instance. The eye-relative origin is not included.
 pub fn object_uniforms(instance: &Instance) -> ObjectUniforms {
     let turned = Mat4::from_mat3(DMat3::from_mat4(instance.world_from_model).as_mat3());
     ObjectUniforms { material: instance.material.index() as u32, ..ObjectUniforms::new(turned) }
 }
 
-/// A light with `origin` as the zero point, multiplied with the exposure (in 1/nits).
+/// Returns a light relative to `origin`, multiplied by the exposure (in 1/nits).
 ///
 /// # Errors
 ///
-/// For a light that breaks a promise of [`Light`]; importers make none.
+/// Fails if the light is invalid as [`Light`] describes. Importers create only valid lights.
 pub fn light_uniforms(light: &Light, origin: DVec3, exposure: f32) -> Result<LightUniforms, LightError> {
     let position: Vec3 = (light.position - origin).as_vec3();
     let direction = light.direction;
@@ -98,7 +98,7 @@ mod tests {
             let color = vertex_attributes(&mesh).next().map(|a| a.color[1].to_f32());
             assert_eq!(color, Some(stored));
         }
-        // What `half_color` and `colors_are_cut` presume.
+        // Assumed by `half_color` and `colors_are_cut`.
         assert_eq!(VERTEX_ATTRIBUTES[5].format, VertexFormat::Float16x4);
     }
 

@@ -29,27 +29,26 @@ use framegraph_scene::progress::ProgressFn;
 
 static IBL: Module<'static> = library::pass("pass/ibl.wgsl").unwrap();
 
-/// Where the brightest texel of the cube lies: below 64512, the largest number of ten-bit floats, with
-/// room for the rounding of sums.
+/// Maximum value of the cube's texels: below 64512, the maximum of 10-bit floats, with room for rounding of sums.
 const PEAK: f64 = 32768.0;
 
-/// The samples that level `level` is filtered with.
+/// Returns the samples that filter a level.
 pub(super) fn level_kernel(settings: &IblSettings, level: u32) -> Vec<KernelRow> {
     let roughness = roughness_from_specular_lod(f64::from(level), f64::from(settings.levels - 1));
     lobe_kernel(roughness, kernel_rows(settings.cube_texels >> level), settings.cube_texels)
 }
 
-/// Radiance prefiltered for a roughness a level.
+/// Radiance, prefiltered for one roughness per level.
 pub(super) struct SpecularCube {
-    /// The cube, to be sampled.
+    /// Cube texture for sampling.
     pub texture: wgpu::Texture,
-    /// The radiance in nits of a texel that holds 1.
+    /// Radiance in nits of a texel with value 1.
     pub texel_nits: f32,
-    /// The bytes of each level, its faces one after the other, if they were asked for; else nothing a level.
+    /// Bytes of each level with consecutive faces if requested, otherwise empty.
     pub levels: Vec<Vec<u8>>,
 }
 
-/// The prefiltered cube of a map; with its bytes when `read_back` is set.
+/// Returns the prefiltered cube of a map, with its bytes if `read_back` is true.
 pub(super) fn specular_cube(
     gpu: &Gpu,
     (name, map): (&str, &EquirectMap),
@@ -58,11 +57,11 @@ pub(super) fn specular_cube(
     read_back: bool,
     progress: &mut ProgressFn<'_>,
 ) -> Result<SpecularCube, IblError> {
-    // Twice as fine as the cube, which is four faces around.
+    // Twice the resolution of the cube, whose four side faces span the width.
     let map = map.reduced(8 * settings.cube_texels);
     let texel_nits = scale_of(map.texels().iter());
     let source = Source::new(gpu, &map, settings.cube_texels, texel_nits)?;
-    // The faces of the source, its levels, the faces of each level of the result.
+    // Faces of the source, its levels, and the faces of each level of the result.
     let total = 6 + 1 + 6 * shape.levels as usize;
     let mut slices = Slices::new(gpu, name, total, progress);
     for face in 0..6 {
@@ -88,24 +87,24 @@ pub(super) fn specular_cube(
     Ok(SpecularCube { texture: prefilter.cube, texel_nits, levels })
 }
 
-/// The power of two that brings the brightest channel below [`PEAK`]; for black texels, one.
+/// Returns the power of two that brings the brightest channel below [`PEAK`]; 1 for black texels.
 pub(super) fn scale_of<'a>(texels: impl Iterator<Item = &'a [f32; 4]>) -> f32 {
     let peak = texels.flat_map(|t| &t[..3]).fold(0.0_f32, |a, b| a.max(*b));
     if peak > 0.0 { (f64::from(peak) / PEAK).log2().ceil().clamp(-120.0, 120.0).exp2() as f32 } else { 1.0 }
 }
 
-/// `pass/ibl.wgsl` with this fragment entry point.
+/// Returns `pass/ibl.wgsl` with this fragment entry point.
 fn program(fragment: &'static str) -> Result<Arc<Program>, PassError> {
     let desc = ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&IBL, &INTERFACE) };
     Program::new(&desc).map(Arc::new)
 }
 
-/// The panorama as a cube with all its levels, in half floats.
+/// Panorama as a cube with all levels, in half floats.
 pub(super) struct Source {
     shape: CubeShape,
     cube: wgpu::Texture,
     panorama: wgpu::Texture,
-    /// Samples along each side of a texel of level 0.
+    /// Number of samples along each side of a texel of level 0.
     samples: u32,
     /// Factor on the panorama.
     scale: f32,
@@ -114,7 +113,7 @@ pub(super) struct Source {
 }
 
 impl Source {
-    /// An empty cube of `texels`² a face, and the panorama uploaded.
+    /// Creates an empty cube of `texels`² per face, and uploads the panorama.
     pub fn new(gpu: &Gpu, map: &EquirectMap, texels: u32, texel_nits: f32) -> Result<Self, IblError> {
         let shape = CubeShape { texels, levels: texels.ilog2() + 1, format: Format::Rgba16Float };
         let (cube, panorama) = gpu.guard("the source of the specular cube", || {
@@ -124,7 +123,7 @@ impl Source {
             shape,
             cube,
             panorama,
-            // Two samples a side of each texel of the map, at least two a side of each of the cube.
+            // Two samples along each side of a map texel, and at least two along each side of a cube texel.
             samples: (map.width().div_ceil(2 * texels)).max(2),
             scale: 1.0 / texel_nits,
             resample: program("fs_cube")?,
@@ -132,14 +131,14 @@ impl Source {
         })
     }
 
-    /// Declares the cube as the slices before this one left it.
+    /// Imports the cube as previous slices left it.
     fn import(&self, frame: &mut Frame, imports: &mut Imports) -> Texture {
         let cube = frame.graph_mut().import_texture("source cube", self.shape.desc(), Entry::Defined, Exit::Keep);
         imports.texture(cube, &self.cube);
         cube
     }
 
-    /// One face of level 0, from the panorama.
+    /// Draws one face of level 0 from the panorama.
     pub fn resample(&self, face: u32, frame: &mut Frame, imports: &mut Imports) -> Result<(), DeclareError> {
         let size = self.panorama.size();
         let desc = TextureDesc::new(Extent::absolute(size.width, size.height), Format::Rgba32Float);
@@ -159,7 +158,7 @@ impl Source {
         Ok(())
     }
 
-    /// All further levels, each from the one above.
+    /// Draws the remaining levels, each from the previous one.
     pub fn halve(&self, frame: &mut Frame, imports: &mut Imports) -> Result<(), DeclareError> {
         let mut cube = self.import(frame, imports);
         for level in 1..self.shape.levels {
@@ -181,16 +180,16 @@ impl Source {
     }
 }
 
-/// The samples of one level, as its draws take them.
+/// Filter samples of one level, as its draws read them.
 pub(super) struct LevelSamples {
     count: u32,
-    /// One over the sum of their weights.
+    /// Reciprocal of the sum of the weights.
     scale: f32,
     rows: Arc<IblKernelUniforms>,
 }
 
 impl LevelSamples {
-    /// Of at most [`IBL_KERNEL_ROWS`] rows.
+    /// Packs at most [`IBL_KERNEL_ROWS`] rows.
     pub fn new(rows: &[KernelRow]) -> Self {
         let mut table = IblKernelUniforms { rows: [Vec4::ZERO; IBL_KERNEL_ROWS] };
         table.rows[..rows.len()].copy_from_slice(rows);
@@ -198,7 +197,7 @@ impl LevelSamples {
     }
 }
 
-/// The specular cube in the making.
+/// Prefiltering in progress.
 pub(super) struct Prefilter<'a> {
     source: &'a Source,
     shape: CubeShape,
@@ -207,14 +206,14 @@ pub(super) struct Prefilter<'a> {
 }
 
 impl<'a> Prefilter<'a> {
-    /// An empty cube of this shape.
+    /// Creates an empty cube of this shape.
     pub fn new(gpu: &Gpu, name: &str, source: &'a Source, shape: &CubeShape) -> Result<Self, IblError> {
         let cube = gpu.guard("the specular cube", || shape.create(gpu, name, TextureUsages::COPY_DST))?;
         Ok(Self { source, shape: *shape, cube, program: program("fs_prefilter")? })
     }
 
-    /// One face of one level. It is drawn apart and copied into place, because OpenGL cannot copy the face of a cube into
-    /// a buffer; the texture that it is drawn into is returned, and kept until the next slice when it is to be read back.
+    /// Draws one face of one level into a separate texture, and copies it to the cube, since OpenGL cannot copy a cube
+    /// face into a buffer. Returns the separate texture, kept until the next slice if it is read back.
     pub fn face(
         &self,
         level: u32,

@@ -1,8 +1,7 @@
-//! The payloads of the cache's entries: little-endian, lengths checked on the way in.
+//! Payloads of cache entries: little-endian, with checked lengths.
 //!
-//! The file around a payload (magic, version, key, checksum) is [`cache`](super::cache)'s business; here a
-//! payload is already known to be what was once written. It may still be of another shape, which is an
-//! error and not a panic.
+//! The module [`cache`](super::cache) checks the file around a payload (magic, version, key, checksum). A payload of
+//! another shape is an error, not a panic.
 
 use framegraph::Format;
 use framegraph_scene::environment::{Sh, ShBands};
@@ -10,48 +9,48 @@ use glam::DVec3;
 
 use super::texture::CubeShape;
 
-/// The kind of an entry that holds an image light.
+/// Kind of entries with prefiltered light.
 pub(super) const LIGHT: u32 = 1;
-/// The kind of an entry that holds a DFG table.
+/// Kind of entries with a DFG table.
 pub(super) const DFG: u32 = 2;
 
-/// What an entry says of an environment's light.
+/// Cached light of an environment.
 pub(super) struct LightEntry {
-    /// Radiance of the map, projected; in nits for a map in nits.
+    /// Radiance of the map as spherical harmonics; in nits for a map in nits.
     pub sh: Sh,
     /// Mean radiance over all directions, linear Rec.709, in nits.
     pub average: DVec3,
-    /// The radiance in nits of a texel of the cube that holds 1.
+    /// Radiance in nits of a cube texel with value 1.
     pub texel_nits: f32,
-    /// The bytes of each level of the cube, its faces one after the other, rows without padding.
+    /// Bytes of each level of the cube: consecutive faces, rows without padding.
     pub levels: Vec<Vec<u8>>,
 }
 
-/// Why an entry of the cache is of no use. Whoever finds one computes it anew.
+/// Reason why a cache entry is unusable. The caller computes it again.
 #[derive(Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(super) enum EntryError {
-    /// The file or its payload has fewer bytes than it should.
+    /// The file or its payload is too short.
     #[error("it is cut short")]
     CutShort,
-    /// The payload has more bytes than it should.
+    /// The payload is too long.
     #[error("it goes on after its end")]
     TrailingBytes,
-    /// The file does not begin as entries do.
+    /// The file does not start with the magic bytes.
     #[error("it is no entry of this cache")]
     Magic,
-    /// The file has another layout.
+    /// The file has another version.
     #[error("it is of another version")]
     Version,
-    /// Some bytes changed after it was written.
+    /// The checksum does not match.
     #[error("it is damaged: its checksum is wrong")]
     Checksum,
-    /// The file was renamed or copied: its key or kind is that of another entry.
+    /// The key or the kind is that of another entry, as after renaming a file.
     #[error("it is another entry under a wrong name")]
     Name,
-    /// The payload has another size or format than what was asked for.
+    /// The payload has another size or format than requested.
     #[error("it holds a cube or table of another size or format")]
     Shape,
-    /// The number of bands of spherical harmonics is none that there is.
+    /// The number of bands of spherical harmonics is unsupported.
     #[error("it holds {0} bands of spherical harmonics, which must be 2, 3 or 5")]
     Bands(u32),
     /// A number is infinite or NaN.
@@ -65,7 +64,7 @@ impl std::fmt::Debug for EntryError {
     }
 }
 
-/// The payload of an image light.
+/// Returns the payload of prefiltered light.
 pub(super) fn encode_light(light: &LightEntry, shape: &CubeShape) -> Vec<u8> {
     let mut out = Vec::with_capacity(1024 + shape.bytes() as usize);
     for number in [shape.texels, shape.levels, format_number(shape.format), light.sh.bands().count() as u32] {
@@ -79,7 +78,7 @@ pub(super) fn encode_light(light: &LightEntry, shape: &CubeShape) -> Vec<u8> {
     out
 }
 
-/// The light of a payload that must be of this shape.
+/// Decodes prefiltered light of this shape.
 pub(super) fn decode_light(payload: &[u8], shape: &CubeShape) -> Result<LightEntry, EntryError> {
     let mut read = Reader(payload);
     let header = [read.u32()?, read.u32()?, read.u32()?];
@@ -105,12 +104,12 @@ pub(super) fn decode_light(payload: &[u8], shape: &CubeShape) -> Result<LightEnt
     Ok(LightEntry { sh: Sh::from_coefficients(bands, coefficients), average, texel_nits, levels })
 }
 
-/// The payload of a DFG table.
+/// Returns the payload of a DFG table.
 pub(super) fn encode_dfg(bytes: &[u8], texels: u32) -> Vec<u8> {
     [&texels.to_le_bytes(), bytes].concat()
 }
 
-/// The texels of a DFG table of this size.
+/// Returns the texels of a DFG table of this size.
 pub(super) fn decode_dfg(payload: &[u8], texels: u32) -> Result<Vec<u8>, EntryError> {
     let mut read = Reader(payload);
     if read.u32()? != texels {
@@ -125,7 +124,7 @@ fn format_number(format: Format) -> u32 {
     if format == Format::Rg11b10Ufloat { 1 } else { 2 }
 }
 
-/// What is left of a payload.
+/// Unread rest of a payload.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {

@@ -1,5 +1,5 @@
-//! The passes that make the specular cube: a draw of `pass/ibl.wgsl` into one face of one level, and the copy of a face
-//! that was drawn apart.
+//! Passes that prefilter the specular cube: a draw of `pass/ibl.wgsl` into a face of a level, and a copy of that face
+//! into the cube.
 
 use std::sync::Arc;
 
@@ -11,29 +11,29 @@ use wgpu::TextureViewDimension;
 use crate::program::full_screen;
 use crate::program::{Interface, Program};
 
-/// What [`DrawFace`] provides to its shader, which reads the source as one of two variables.
+/// Interface of [`DrawFace`]; its shader reads the source as one of two variables.
 pub(super) static INTERFACE: Interface =
     Interface { groups: &[&["ibl", "panorama", "cube", "cube_sampler", "ibl_kernel"]], constants: &["SMALL_FLOATS"] };
 
-/// Draws one face: what the shader binds of `panorama` and `cube` is `source`.
+/// Draws one face. The shader's `panorama` or `cube` is bound to `source`.
 pub(super) struct DrawFace {
     /// `pass/ibl.wgsl` with one of its fragment entry points.
     pub program: Arc<Program>,
-    /// The target has ten- and eleven-bit floats: the shader's `SMALL_FLOATS`.
+    /// True if the target has 10- and 11-bit floats: the shader's `SMALL_FLOATS`.
     pub small_floats: bool,
     /// The panorama, or six layers of a cube.
     pub source: ReadOnly,
-    /// How the shader sees the source: as one image, or as a cube.
+    /// View dimension of the source: an image, or a cube.
     pub seen_as: TextureViewDimension,
-    /// The face: one layer of one level. All its texels are written.
+    /// Face: one layer of one level. All its texels are written.
     pub target: Part,
     /// Face, size and scale.
     pub uniforms: IblUniforms,
-    /// Samples of the lobe, where the entry point filters.
+    /// Samples of the lobe, if the entry point filters.
     pub kernel: Option<Arc<IblKernelUniforms>>,
 }
 
-/// What [`DrawFace`] reads and wrote.
+/// Resources of [`DrawFace`].
 #[derive(Clone, Copy)]
 pub(super) struct DrawFaceIo {
     source: View,
@@ -63,19 +63,19 @@ impl Record for DrawFace {
     }
 }
 
-/// Copies a texture of one face into its place in a cube.
+/// Copies the texture of a face into a cube.
 pub(super) struct CopyFace {
     /// One level, one layer.
     pub face: Texture,
-    /// The cube; only the face at `level` and `layer` is written.
+    /// Cube; only the face at `level` and `layer` is written.
     pub cube: Texture,
     /// Level of the cube.
     pub level: u8,
-    /// Layer of the cube: the number of the face, 0…5.
+    /// Layer of the cube: the index of the face, 0…5.
     pub layer: u16,
 }
 
-/// What [`CopyFace`] reads and wrote.
+/// Resources of [`CopyFace`].
 #[derive(Clone, Copy)]
 pub(super) struct CopyFaceIo {
     face: View,

@@ -1,4 +1,4 @@
-//! Computing the DFG table on the GPU, some rows a slice.
+//! Computation of the DFG table on the GPU, some rows per slice.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,17 +23,17 @@ use framegraph_scene::progress::ProgressFn;
 
 static DFG: Module<'static> = library::pass("pass/dfg.wgsl").unwrap();
 
-/// Rows that one slice draws, between which the work can be interrupted.
+/// Number of rows per slice; the work can be interrupted between slices.
 const ROWS_PER_SLICE: u32 = 16;
 
-/// What [`IntegrateRows`] provides to its shader.
+/// Interface of [`IntegrateRows`].
 static INTERFACE: Interface =
     Interface { groups: &[], constants: &["TABLE_TEXELS", "FAST_VISIBILITY", "GGX_SAMPLES", "CLOTH_SAMPLES"] };
 
 impl DfgSettings {
-    /// Visible-normal samples of the GGX lobe in each texel.
+    /// Number of visible-normal samples of the GGX lobe for each texel.
     pub const GGX_SAMPLES: u32 = 1024;
-    /// Uniform samples of the cloth lobe in each texel.
+    /// Number of uniform samples of the cloth lobe for each texel.
     pub const CLOTH_SAMPLES: u32 = 4096;
 
     fn check(&self) -> Result<(), SceneError> {
@@ -45,12 +45,12 @@ impl DfgSettings {
 }
 
 impl DfgTable {
-    /// Computes the table, or finds it in `cache`. Reports each slice as
+    /// Computes the table, or loads it from `cache`. Reports each slice as
     /// [`Stage::Lighting`](framegraph_scene::Stage::Lighting).
     ///
     /// # Errors
     ///
-    /// When the size is out of range, when `progress` asks to stop, or when the device fails.
+    /// Fails if the size is out of range, `progress` stops the work, or the device fails.
     pub fn new(
         gpu: &Gpu,
         settings: DfgSettings,
@@ -89,7 +89,7 @@ fn key(settings: DfgSettings) -> Key {
     key
 }
 
-/// An empty table with these uses beside being sampled and read back.
+/// Creates an empty table for sampling, readback and `usage`.
 pub(super) fn create(gpu: &Gpu, texels: u32, usage: TextureUsages) -> Result<wgpu::Texture, DeviceError> {
     gpu.guard("the DFG table", || {
         gpu.device.create_texture(&TextureDescriptor {
@@ -121,13 +121,12 @@ fn integrate(gpu: &Gpu, settings: DfgSettings, progress: &mut ProgressFn<'_>) ->
     Ok(table)
 }
 
-/// The shader that integrates.
+/// Returns the integration shader.
 pub(super) fn program() -> Result<Arc<Program>, IblError> {
     Ok(Arc::new(Program::new(&ProgramDesc::new(&DFG, &INTERFACE))?))
 }
 
-/// Declares one slice. The first clears the table, the others add their rows to what is there. Returns the table, which is
-/// imported.
+/// Declares one slice and returns the imported table. The first slice clears the table, and later ones keep its rows.
 pub(super) fn declare_slice(
     settings: DfgSettings,
     slice: u32,
@@ -150,7 +149,7 @@ struct IntegrateRows {
     program: Arc<Program>,
     settings: DfgSettings,
     table: Texture,
-    /// What becomes of the other rows.
+    /// Load operation for the other rows.
     intent: Intent,
     rows: Range<u32>,
 }
@@ -177,7 +176,7 @@ impl Record for IntegrateRows {
     }
 }
 
-/// A table of these bytes, rows without padding.
+/// Creates a table from bytes in rows without padding.
 fn write(gpu: &Gpu, texels: u32, bytes: &[u8]) -> Result<wgpu::Texture, DeviceError> {
     let texture = create(gpu, texels, TextureUsages::COPY_DST)?;
     gpu.guard("the DFG table", || {

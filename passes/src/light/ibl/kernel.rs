@@ -1,41 +1,38 @@
-//! The samples that stand for a lobe: directions, with the level of the source to read at each.
+//! Filter samples of a lobe: directions, each with the level of the source to read.
 //!
-//! Viewer, normal and reflection coincide, so one table serves every texel of a level. Half vectors are
-//! drawn from GGX (Walter et al. 2007) at the points of a golden spiral, which covers a disc more evenly
-//! than a Hammersley set; each stands for a share of the lobe's solid angle and reads the level whose
-//! texels cover a few times that share, so that neighboring reads overlap.
+//! Viewer, normal and reflection coincide, so all texels of a level share the samples. Half vectors are
+//! GGX-distributed (Walter et al. 2007) along a golden spiral, which is more even than a Hammersley set. Each sample
+//! reads the level whose texels cover a few times its solid angle, so that neighboring samples overlap.
 
 use std::f64::consts::{PI, TAU};
 
 use framegraph_shaders::layout::IBL_KERNEL_ROWS;
 use glam::Vec4;
 
-/// How many times its own solid angle a sample is blurred over. Křivánek and Colbert choose 4, which is
-/// best where samples are many: a source of one texel then errs by 4 % instead of 11. Few samples stand
-/// for large shares, and 4 times those would widen the lobe itself.
+/// Footprint of a sample as a multiple of its solid angle. Křivánek and Colbert choose 4, which is best for many
+/// samples: the error of a one-texel source is 4 % instead of 11 %. With few samples, 4 would widen the lobe.
 const OVERLAP: f64 = 4.0;
-/// The same for levels of few samples.
+/// Footprint of a sample in levels of fewer than [`FEW`] samples, as a multiple of its solid angle.
 const OVERLAP_OF_FEW: f64 = 2.0;
-/// What few samples are.
+/// Number of samples below which a level counts as having few.
 const FEW: u32 = 256;
-/// Turns from one point of the spiral to the next: the golden ratio less one.
+/// Turns between consecutive points of the spiral: the golden ratio minus one.
 const GOLDEN_TURNS: f64 = 0.618_033_988_749_894_9;
-/// Samples that a level may take over all its texels: what decides how long a level takes.
+/// Maximum number of samples over all texels of a level, which limits its time.
 const SAMPLES_PER_LEVEL: u32 = 6 << 20;
 
-/// One sample: a direction about +Z whose z is also its weight, and the source level.
+/// Sample: a direction about +Z whose z is also its weight, and the source level.
 pub type KernelRow = Vec4;
 
-/// How many samples a level of `size`² texels a face gets: few where texels are many and the lobe is
-/// narrow, so that all levels take about as long.
+/// Returns the number of samples of a level with `size`² texels per face. Large levels have narrow lobes and get
+/// fewer, so that all levels take a similar time.
 #[must_use]
 pub fn kernel_rows(size_texels: u32) -> u32 {
     (SAMPLES_PER_LEVEL / (6 * size_texels * size_texels)).clamp(64, IBL_KERNEL_ROWS as u32)
 }
 
-/// `samples` samples of a lobe of this perceptual roughness over a source cube of `source_texels`² a
-/// face, all above the horizon. A mirror, and anything below roughness 0.001, is the one direction
-/// itself.
+/// Returns `samples` samples of a lobe of this perceptual roughness, over a source cube of `source_texels`² per face.
+/// All are above the horizon. Below roughness 0.001, returns a single direction.
 #[must_use]
 pub fn lobe_kernel(roughness: f64, samples: u32, source_texels: u32) -> Vec<KernelRow> {
     if roughness < 1e-3 {
@@ -44,7 +41,7 @@ pub fn lobe_kernel(roughness: f64, samples: u32, source_texels: u32) -> Vec<Kern
     let alpha2 = roughness.powi(4);
     let texel_sr = 4.0 * PI / (6.0 * f64::from(source_texels).powi(2));
     let overlap = if samples <= FEW { OVERLAP_OF_FEW } else { OVERLAP };
-    // The share of half vectors whose reflection is above the horizon: those below 45°.
+    // Fraction of half vectors whose reflection is above the horizon: those below 45°.
     let above = 1.0 / (1.0 + alpha2);
     let row = |i: u32| {
         let u = (f64::from(i) + 0.5) / f64::from(samples) * above;
@@ -62,7 +59,7 @@ pub fn lobe_kernel(roughness: f64, samples: u32, source_texels: u32) -> Vec<Kern
     (0..samples).map(row).collect()
 }
 
-/// The sum of the weights.
+/// Returns the sum of the weights.
 pub(super) fn weight_sum(rows: &[KernelRow]) -> f64 {
     rows.iter().map(|row| f64::from(row.z)).sum()
 }

@@ -1,8 +1,8 @@
-//! Work at load time as render graphs: one small graph a slice, executed and waited for, so that loading can report and
-//! stop between slices.
+//! Load-time work as small render graphs, one per slice. Each is executed and awaited, so that loading can report
+//! progress and stop between slices.
 //!
-//! A slice is declared, compiled and executed as a frame is: its passes say what they touch, and the compiler derives
-//! loads and stores. What one slice leaves for the next is a texture that both import.
+//! A slice is declared, compiled and executed like a frame, and the compiler derives loads and stores. Slices pass
+//! textures on by importing them.
 
 use std::path::Path;
 
@@ -12,13 +12,13 @@ use framegraph_wgpu::{ExecuteError, Executor, ExecutorOptions, Frame, Gpu, Impor
 use super::error::IblError;
 use framegraph_scene::progress::{Progress, ProgressFn, Stage, report};
 
-/// Executes slices one after the other on one device, and reports each.
+/// Executes slices in order on one device, and reports each.
 pub(super) struct Slices<'a, 'p> {
-    /// What is made, for messages and reports.
+    /// Name of the result, for messages and reports.
     name: &'a str,
-    /// How many slices are finished.
+    /// Number of finished slices.
     done: usize,
-    /// How many slices there are.
+    /// Total number of slices.
     total: usize,
     progress: &'a mut ProgressFn<'p>,
     executor: Executor,
@@ -29,7 +29,7 @@ pub(super) struct Slices<'a, 'p> {
 }
 
 impl<'a, 'p> Slices<'a, 'p> {
-    /// Nothing is executed yet; `total` slices will be.
+    /// Prepares `total` slices. Executes nothing.
     pub fn new(gpu: &Gpu, name: &'a str, total: usize, progress: &'a mut ProgressFn<'p>) -> Self {
         let options = ExecutorOptions { timing: false, ..ExecutorOptions::default() };
         Self {
@@ -45,12 +45,12 @@ impl<'a, 'p> Slices<'a, 'p> {
         }
     }
 
-    /// Declares, compiles and executes one slice, waits for the device, and reports `item` as done. Returns what
-    /// `declare` returned.
+    /// Declares, compiles and executes one slice, waits for the device, and reports `item` as done. Returns the result
+    /// of `declare`.
     ///
     /// # Errors
     ///
-    /// When the graph or its execution is refused, when the device fails, or when the report asks to stop.
+    /// Fails if the graph or its execution fails, the device fails, or the report stops the work.
     pub fn run<T>(
         &mut self,
         item: &str,
@@ -73,13 +73,13 @@ impl<'a, 'p> Slices<'a, 'p> {
         Ok(declared)
     }
 
-    /// The texture behind a handle of the slice that was executed last, as it left it.
+    /// Returns the texture of a handle of the most recently executed slice.
     pub fn texture(&self, handle: framegraph::Texture) -> Option<&wgpu::Texture> {
         self.executor.texture(&self.plan, handle)
     }
 }
 
-/// Compiles the graph of a slice. All its sizes are absolute, so that of the frame does not matter.
+/// Compiles the graph of a slice. All its sizes are absolute, so the frame size has no effect.
 pub(super) fn compile(graph: &Graph, gpu: &Gpu, scratch: &mut Scratch, plan: &mut Plan) -> Result<(), IblError> {
     Ok(framegraph::compile(graph, &gpu.caps(), &Options::for_frame(1, 1), scratch, plan)?)
 }

@@ -1,4 +1,4 @@
-//! The specular cube as a texture: its format, its bytes, its views.
+//! Specular cube as a texture: format, bytes, views.
 
 use super::settings::EnvironmentFormat;
 use framegraph::{Extent, Format, TextureDesc};
@@ -19,7 +19,7 @@ pub(super) struct CubeShape {
 }
 
 impl CubeShape {
-    /// Width and height of a level.
+    /// Returns the width and height of a level.
     pub fn level_texels(&self, level: u32) -> u32 {
         (self.texels >> level).max(1)
     }
@@ -28,22 +28,22 @@ impl CubeShape {
         self.format.block_bytes()
     }
 
-    /// Bytes of one face of a level.
+    /// Returns the size of one face of a level in bytes.
     pub fn face_bytes(&self, level: u32) -> usize {
         (self.level_texels(level).pow(2) * self.texel_bytes()) as usize
     }
 
-    /// Bytes of all levels.
+    /// Returns the size of all levels in bytes.
     pub fn bytes(&self) -> u64 {
         (0..self.levels).map(|level| 6 * self.face_bytes(level) as u64).sum()
     }
 
-    /// The shape as graphs declare it.
+    /// Returns the texture description for graphs.
     pub fn desc(&self) -> TextureDesc {
         TextureDesc::new(Extent::absolute(self.texels, self.texels), self.format).mips(self.levels as u8).layers(6)
     }
 
-    /// An empty cube with these uses beside being sampled.
+    /// Creates an empty cube for sampling and `usage`.
     pub fn create(&self, gpu: &Gpu, label: &str, usage: TextureUsages) -> Texture {
         gpu.device.create_texture(&TextureDescriptor {
             label: Some(label),
@@ -58,8 +58,8 @@ impl CubeShape {
     }
 }
 
-/// The format that a cube is drawn in: the smallest that the device can draw into and filter, or half floats if they are
-/// asked for. RGBM is encoded from half floats.
+/// Returns the format to render a cube in: the smallest that the device can render to and filter, or half floats on
+/// request. RGBM is encoded from half floats.
 pub(super) fn cube_format(gpu: &Gpu, asked: EnvironmentFormat) -> Format {
     let features = gpu.format_features(Format::Rg11b10Ufloat);
     let usages = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
@@ -68,7 +68,7 @@ pub(super) fn cube_format(gpu: &Gpu, asked: EnvironmentFormat) -> Format {
     if small && asked == EnvironmentFormat::Rg11b10 { Format::Rg11b10Ufloat } else { Format::Rgba16Float }
 }
 
-/// The whole cube.
+/// Returns a view of the whole cube.
 pub(super) fn cube_view(cube: &Texture) -> TextureView {
     cube.create_view(&TextureViewDescriptor {
         label: Some("cube"),
@@ -77,7 +77,7 @@ pub(super) fn cube_view(cube: &Texture) -> TextureView {
     })
 }
 
-/// An equirectangular map on the device, in 32-bit floats: to be loaded from, since those may not be filterable.
+/// Uploads an equirectangular map in 32-bit floats. Shaders load its texels, since the format may not be filterable.
 pub(super) fn panorama_texture(gpu: &Gpu, map: &EquirectMap) -> Texture {
     let desc = TextureDescriptor {
         label: Some("panorama"),
@@ -93,7 +93,7 @@ pub(super) fn panorama_texture(gpu: &Gpu, map: &EquirectMap) -> Texture {
     gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, texels)
 }
 
-/// A cube with these bytes: those of each level, its six faces one after the other, rows without padding.
+/// Creates a cube from the bytes of each level: six consecutive faces, rows without padding.
 pub(super) fn write_cube(
     gpu: &Gpu,
     label: &str,
