@@ -93,7 +93,7 @@ pub fn rows() -> Vec<String> {
     let line = |row: &super::rows::Row| {
         let functions = row.functions().into_iter().map(|function| format!("`{function}`"));
         let places = row.places.iter().map(|place| match place {
-            Place::Test(file, test) => format!("[{test}](../{file})"),
+            Place::Test(file, test) => format!("[{test}](../../{file})"),
             Place::Elsewhere(why) => (*why).to_owned(),
         });
         let held: Vec<String> = functions.chain(places).collect();
