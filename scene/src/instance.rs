@@ -17,7 +17,7 @@ pub struct Instance {
     /// Material of the instance.
     pub material: MaterialId,
     /// World transform: affine, column-major, in meters. It is in f64 since at 10⁶ m an f32 translation jitters by 8
-    /// pixels; see [`relative_from_model`](Self::relative_from_model).
+    /// pixels; see [`relative_from_model`](Instance::relative_from_model).
     pub world_from_model: DMat4,
     /// Bounds of the mesh in world space, conservative.
     pub bounds: Aabb,

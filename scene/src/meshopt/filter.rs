@@ -1,4 +1,5 @@
-//! Filters of decoded attributes (appendix B). Results may differ by one step from other decoders, as the extension allows.
+//! Filters of decoded attributes (appendix B). Results may differ by one step from other decoders, as the extension
+//! allows.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 

@@ -2,8 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-/// A sum of squared distances from planes: p·Ap + 2 b·p + c (M. Garland, P. Heckbert, "Surface Simplification Using Quadric Error
-/// Metrics", SIGGRAPH 1997).
+/// Sum of squared distances from planes: p·Ap + 2 b·p + c (M. Garland, P. Heckbert, "Surface Simplification Using
+/// Quadric Error Metrics", SIGGRAPH 1997).
 #[derive(Clone, Copy)]
 pub(super) struct Quadric {
     a: DMat3,

@@ -1,4 +1,5 @@
-//! Lobes of materials: clear coat, sheen, anisotropy, transmission with its volume, dispersion, specular, iridescence, diffuse
+//! Lobes of materials: clear coat, sheen, anisotropy, transmission with its volume, dispersion, specular, iridescence,
+//! diffuse
 //! transmission.
 
 use crate::material::{Lobe, Lobes};
