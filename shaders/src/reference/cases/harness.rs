@@ -37,7 +37,7 @@ fn half_float(x: f64) -> f64 {
     quantize_mantissa(x.clamp(-FLOAT16_MAX, FLOAT16_MAX), 10, false)
 }
 
-/// Returns combination `number`: one point of each list.
+/// Appends combination `index` to `numbers`: one point of each list.
 fn combine(lists: &[Vec<Vec<f64>>], mut index: usize, numbers: &mut Vec<f64>) {
     for list in lists {
         numbers.extend(&list[index % list.len()]);
