@@ -4,7 +4,7 @@
 //! 2. `condition` removes items that `@if` attributes switch off.
 //! 3. `module` finds imports and declarations.
 //! 4. `link` follows imports and writes the declarations that entry points reach, each below a comment with its file
-//! and line. It numbers the bindings of effects after those of the pass.
+//!    and line. It numbers the bindings of effects after those of the pass.
 //! 5. `check` validates the text with naga and maps errors back to the author's lines.
 //!
 //! Names are kept as written, so errors, captures and reflection show the author's names. Names of shared files are

@@ -1,5 +1,5 @@
-//! What texts cost as instructions of SPIR-V: with loops counted at run time and without, and of the color pass feature by feature.
-//! `docs/measurements/performance.md` has both tables.
+//! Cost of shaders in SPIR-V instructions, with and without loops counted at run time, and of the color pass by
+//! feature. Both tables are in `docs/measurements/performance.md`.
 
 use crate::variants;
 use framegraph_shaders::{Feature, Features, Module, resolve};
@@ -17,7 +17,7 @@ struct Operations {
 }
 
 impl Operations {
-    /// Of a module's words: from the first `OpFunction` on, without what gives names and ends to blocks and functions.
+    /// Counts the instructions of a module from the first `OpFunction` on, without names and block or function ends.
     fn of(words: &[u32]) -> Self {
         const FUNCTION: u32 = 54;
         /// `OpFunction`, its parameters and end; labels and the merges before branches.
@@ -36,7 +36,7 @@ impl Operations {
     }
 }
 
-/// Of all entry points of a text together, with the checks of wgpu; each takes what it calls.
+/// Counts all entry points of a text with their callees, including the checks of wgpu.
 fn operations(pass: &Module<'_>, features: &Features, loops_counted: bool) -> Operations {
     let shader = resolve(pass, features, &[]).expect("a variant");
     let module = naga::front::wgsl::parse_str(&shader.wgsl).expect("a module");

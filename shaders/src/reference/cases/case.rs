@@ -7,48 +7,47 @@
 /// the value rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
-    /// In the unit of the result.
+    /// Absolute tolerance in the unit of the result.
     pub absolute: f64,
-    /// As a share of the mirror's value.
+    /// Relative tolerance, as a share of the mirror's value.
     pub relative: f64,
-    /// Results are compared modulo this, as for an angle; zero for not.
+    /// Modulus for comparing periodic results such as angles; zero for none.
     pub period: f64,
 }
 
 /// Domain of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
-    /// One number, uniform between the two.
+    /// One number, uniform between two limits.
     Linear(f64, f64),
-    /// One number, uniform in its logarithm; both ends positive.
+    /// One number, uniform in its logarithm between two positive limits.
     Log(f64, f64),
-    /// One whole number, 0…n-1.
+    /// One integer, 0…n-1.
     Count(u32),
-    /// One number out of a list: hard cases.
+    /// One number from a list of hard values.
     Values(&'static [f64]),
     /// Three numbers, a unit vector.
     Direction,
-    /// Six numbers, two unit vectors; the angle between them, in radians, is uniform in its
-    /// logarithm.
+    /// Six numbers: two unit vectors. The angle between them, in radians, is uniform in its logarithm.
     Directions(f64, f64),
-    /// Numbers that are alike, each uniform between the two.
+    /// Several independent numbers, each uniform between two limits.
     Vector(usize, f64, f64),
 }
 
-/// A function of the library.
+/// Function of the library.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// File of `wgsl/lib/` and module of the mirror, without ending.
+    /// File of `wgsl/lib/` and module of the mirror, without extension.
     pub file: &'static str,
-    /// Name in both.
+    /// Name of the function in both.
     pub function: &'static str,
     /// Domains of its parameters; together they fill `x`.
     pub parameters: &'static [Domain],
-    /// WGSL expression that calls it with arguments made of `x[0]`, `v3(1u)`, …
+    /// WGSL expression that calls the function with arguments such as `x[0]` and `v3(1u)`.
     pub call: &'static str,
-    /// WGSL expressions of type f32 that take the result `r` apart.
+    /// WGSL expressions of type f32 that extract values from the result `r`.
     pub results: &'static [&'static str],
-    /// The mirror, of the same numbers and with the same results.
+    /// Mirror function with the same inputs and results.
     pub mirror: fn(&[f64]) -> Vec<f64>,
     /// Error tolerance.
     pub bound: Bound,
@@ -61,28 +60,28 @@ pub struct Case {
 /// Differences of a function in the half-float build.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfCase {
-    /// Domains of its parameters, rounded to half floats before they are used.
+    /// Domains of the parameters, rounded to half floats before use.
     pub parameters: &'static [Domain],
     /// Error tolerance against the mirror of the rounded inputs.
     pub bound: Bound,
 }
 
-/// The largest deviation of a case that passed.
+/// Largest deviation of a case that passed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Deviation {
     /// Largest |gpu - mirror|.
     pub absolute: f64,
-    /// Largest share of the bound that was used, 0…1.
+    /// Largest share of the error bound in use, 0…1.
     pub of_bound: f64,
 }
 
-/// A point where shader and mirror disagree.
+/// Point where shader and mirror disagree.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[error("{function}({inputs:?}) result {result}: shader {gpu}, mirror {mirror}, bound {bound:e}")]
 pub struct Disagreement {
     /// Name of the function.
     pub function: &'static str,
-    /// Its numbers.
+    /// Inputs of the function.
     pub inputs: Vec<f32>,
     /// Index into [`Case::results`].
     pub result: usize,

@@ -3,8 +3,8 @@
 use super::case::Domain;
 use glam::DVec3;
 
-/// Numbers that break arithmetic: none, what is no full half float, what rounds to one and past it, the ends of curves and
-/// of half floats.
+/// Hard inputs: zero, subnormal half floats, values that round to one or just above, and the limits of curves and of
+/// half floats.
 const HARD: [f64; 18] = [
     -1.0,
     -0.5,
@@ -37,7 +37,7 @@ impl Domain {
         }
     }
 
-    /// Ends and corners, where trouble is.
+    /// Returns the limits and corners of the domain.
     pub(super) fn specials(self) -> Vec<Vec<f64>> {
         match self {
             Self::Linear(low, high) | Self::Log(low, high) => vec![vec![low], vec![high]],
@@ -59,7 +59,7 @@ impl Domain {
         }
     }
 
-    /// [`Self::specials`] and whatever of [`HARD`] lies within.
+    /// Returns [`Self::specials`] and the values of [`HARD`] inside the domain.
     pub(super) fn hard(self) -> Vec<Vec<f64>> {
         let mut points = self.specials();
         let within = |low: f64, high: f64| HARD.into_iter().filter(move |x| low <= *x && *x <= high);
@@ -67,7 +67,7 @@ impl Domain {
             Self::Linear(low, high) | Self::Log(low, high) => points.extend(within(low, high).map(|x| vec![x])),
             Self::Vector(width, low, high) => {
                 points.extend(within(low, high).map(|x| vec![x; width]));
-                // Components that differ, so that none cancels for being the same or for standing on a line.
+                // Distinct components, so that errors do not cancel.
                 let share = |i: usize| (0.3 + 0.618_034 * i as f64).fract();
                 points.push((0..width).map(|i| low + (high - low) * share(i)).collect());
             }
@@ -81,7 +81,7 @@ impl Domain {
         points
     }
 
-    /// A point of it from uniform numbers in [0, 1).
+    /// Returns a point of the domain from uniform numbers in [0, 1).
     pub(super) fn sample(self, random: &mut impl FnMut() -> f64, out: &mut Vec<f64>) {
         match self {
             Self::Linear(low, high) => out.push(low + (high - low) * random()),
@@ -99,7 +99,7 @@ impl Domain {
                 Self::Direction.sample(random, out);
                 Self::Direction.sample(random, out);
                 let n = DVec3::from_slice(&out[from..]);
-                // Any direction but n itself tells which way to tilt.
+                // Any direction except n gives a tilt axis.
                 let aside = DVec3::from_slice(&out[from + 3..]).reject_from_normalized(n).normalize();
                 let (s, c) = (low * (high / low).powf(random())).sin_cos();
                 out.truncate(from + 3);

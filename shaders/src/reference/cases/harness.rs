@@ -1,11 +1,11 @@
-//! Running a case: its shader, its numbers, its verdict.
+//! Execution of a case: its shader, inputs and result check.
 
 use super::super::quantize::{FLOAT16_MAX, quantize_mantissa};
 use super::case::{Bound, Case, Deviation, Disagreement};
 use super::domain::splitmix;
 use crate::{Feature, Features, Module, Shader, ShaderError, resolve};
 
-/// Functions a [`Case::call`] may use to read several of its numbers at once.
+/// Functions that a [`Case::call`] may use to read several of its inputs at once.
 const READERS: &str = "\
 fn v2(i: u32) -> vec2<f32> { return vec2<f32>(x[i], x[i + 1u]); }
 fn v3(i: u32) -> vec3<f32> { return vec3<f32>(x[i], x[i + 1u], x[i + 2u]); }
@@ -32,12 +32,12 @@ fn rows9(i: u32) -> array<vec4<f32>, 9> {
 }
 ";
 
-/// The nearest half float.
+/// Rounds to the nearest half float.
 fn half_float(x: f64) -> f64 {
     quantize_mantissa(x.clamp(-FLOAT16_MAX, FLOAT16_MAX), 10, false)
 }
 
-/// The combination of this number: one point of each list.
+/// Appends combination `index` to `numbers`: one point of each list.
 fn combine(lists: &[Vec<Vec<f64>>], mut index: usize, numbers: &mut Vec<f64>) {
     for list in lists {
         numbers.extend(&list[index % list.len()]);
@@ -46,16 +46,17 @@ fn combine(lists: &[Vec<Vec<f64>>], mut index: usize, numbers: &mut Vec<f64>) {
 }
 
 impl Case {
-    /// Numbers one evaluation takes.
+    /// Returns the number of input values per evaluation.
     pub fn input_width(&self) -> usize {
         self.parameters.iter().map(|p| p.width()).sum()
     }
 
-    /// A compute shader: entry point `evaluate`, workgroups of 64, group 0 with the numbers at
-    /// binding 0 (read) and the results at binding 1 (written), one row after the other.
+    /// Returns a compute shader with entry point `evaluate` and workgroups of 64. Group 0 has the inputs at binding 0
+    /// (read) and the results at binding 1 (written), one row after the other.
     ///
     /// # Errors
-    /// When `call` or `results` is wrong, which a test of this crate rules out.
+    ///
+    /// If `call` or `results` is invalid, which a test of this crate rules out.
     pub fn shader(&self) -> Result<Shader, ShaderError> {
         self.built(self.in_half)
     }
@@ -90,8 +91,8 @@ impl Case {
         text
     }
 
-    /// Deterministic: every call gives the same values.
-    /// them, then points spread over the domain. The same every time.
+    /// Returns the inputs: first the hard combinations, then points spread over the domain. The values are
+    /// deterministic.
     pub fn inputs(&self, count: usize) -> Vec<f32> {
         let specials: Vec<Vec<Vec<f64>>> = self.parameters.iter().map(|p| p.specials()).collect();
         let total: usize = specials.iter().map(Vec::len).product();
@@ -103,7 +104,7 @@ impl Case {
         for row in 0..count {
             let mut numbers = Vec::new();
             if row < corners {
-                // Spread evenly over the combinations where there are too many.
+                // Spread evenly over the combinations if there are too many.
                 combine(&specials, row * total / corners, &mut numbers);
             } else {
                 self.parameters.iter().for_each(|p| p.sample(&mut random, &mut numbers));
@@ -113,15 +114,15 @@ impl Case {
         rows
     }
 
-    /// Every combination of what is hard in its domains; where there are more than `most`, that many of them, spread evenly.
-    /// In the build in half floats rounded to them.
+    /// Returns all combinations of hard values of the domains, or `most` of them, spread evenly. Values are rounded to
+    /// half floats in the half-float build.
     pub fn hard_inputs(&self, most: usize) -> Vec<f32> {
         let lists: Vec<Vec<Vec<f64>>> = self.parameters.iter().map(|p| p.hard()).collect();
         let total = lists.iter().fold(1_usize, |product, list| product.saturating_mul(list.len()));
         let count = total.min(most);
         let mut numbers = Vec::new();
         for row in 0..count {
-            // A prime that divides no product of such lengths: each combination comes once before any comes again.
+            // A prime that divides no product of such lengths: each combination appears once before any repeats.
             combine(&lists, (row as u128 * 2_654_435_761 % total as u128) as usize, &mut numbers);
         }
         // NaN and values outside the range of half floats are passed unchanged.
@@ -132,9 +133,11 @@ impl Case {
     /// Compares results with the mirror, row by row.
     ///
     /// # Errors
-    /// The first point that lies outside the bound; a NaN always does.
+    ///
+    /// Returns the first point outside the bound; NaN is always outside.
     ///
     /// # Panics
+    ///
     /// If `results` does not hold one row for each row of `inputs`.
     pub fn check(&self, inputs: &[f32], results: &[f32]) -> Result<Deviation, Box<Disagreement>> {
         let rows = inputs.chunks_exact(self.input_width());
