@@ -71,7 +71,7 @@ fn the_ways_of_post_processing_cost_what_the_program_prints() {
     let ways = [
         ("inlined", true, false, 0),
         ("fused: one full-screen pass", false, false, 1),
-        ("unfused: a pass for each effect", false, true, effects),
+        ("unfused: one pass per effect", false, true, effects),
     ];
     let rows = rows("render --compare-post");
     assert_eq!(rows.len(), 2 * ways.len(), "{rows:?}");

@@ -101,3 +101,18 @@ Image-based light is cached in the user's cache folder; FRAMEGRAPH_LIGHT_CACHE n
 All files are written together at the end, or none; pipes and devices are written through. SIGINT and SIGTERM stop the run at
 its next step without writing files.
 Exit codes: 0 success, 1 device failure, 2 invalid input or output, 128 + N stopped by signal N.";
+
+#[cfg(test)]
+mod tests {
+    /// The manual lists the options that the program prints.
+    #[test]
+    fn the_manual_has_all_options() {
+        let manual = include_str!("../../../../docs/render.md");
+        let (_, after) = manual.split_once("<!-- help -->\n```text\n").expect("the manual has a block of options");
+        let (block, _) = after.split_once("\n```\n<!-- end -->").expect("the block ends");
+        assert!(
+            block == super::help().trim_end(),
+            "docs/render.md: replace the options by the output of `render --help`"
+        );
+    }
+}
