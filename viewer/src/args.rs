@@ -17,8 +17,8 @@ usage: viewer [FILE] [options]
        viewer --standard PRESET|SETTINGS.ron [options]
        viewer --live [SCENE] [--settings PRESET|SETTINGS.ron] [--environment FILE] [options]
 
-FILE is a plan (JSON, docs/reference/plan-json.md), a graph (FRAME.ron, docs/reference/graph-format.md), or a trace (`render --trace`).
-Graphs are compiled here, and again after each change. docs/reference/viewer.md shows the views.
+FILE is a plan (JSON, docs/reference/plan-json.md), a graph (FRAME.ron, docs/reference/graph-format.md), or a trace
+(`render --trace`). Graphs are compiled here, and again after each change. docs/reference/viewer.md shows the views.
 
   --plan FILE         same as FILE
   --standard PRESET   show the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings
