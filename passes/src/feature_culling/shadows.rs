@@ -5,7 +5,8 @@ use super::effect::Effect;
 use super::fact::{Fact, Proof};
 use super::rule_input::RuleInput;
 
-/// Maximum ratio of the farthest to the nearest receiver for which one cascade still has half the resolution of four.
+/// Maximum ratio of the farthest to the nearest receiver for which one cascade suffices. Its texels are then at most
+/// twice as wide on screen as those of four cascades.
 const ONE_MAP: f64 = 1.86;
 
 pub(super) fn rules(case: &RuleInput<'_>, facts: &mut Facts) {

@@ -1,14 +1,14 @@
-//! Which froxels a light's reach touches: a sphere is cut down slab by slab, four columns at a time.
+//! Froxels within reach of a light: a sphere is clipped slice by slice, row by row, and four columns at a time.
 //!
-//! What of a ball lies beyond a plane that passes its middle at distance d lies in a ball about the middle's foot on the
-//! plane, of squared radius r² - d². So a ball that is cut by the end of a slice, then by the side of a row, and last compared
-//! with the sides of columns misses none that it touches (Persson, "Practical Clustered Shading", 2013).
+//! A plane at distance d from the center of a ball of radius r cuts off a cap. The cap lies within a ball of squared
+//! radius r² - d² around the projection of the center onto the plane. Clipping by a slice and a row, and comparing
+//! with the sides of columns, therefore misses no froxel (Persson, "Practical Clustered Shading", 2013).
 
 use super::grid::FroxelGrid;
 use super::reach::Reach;
 use glam::{DQuat, Vec3, Vec4};
 
-/// A [`Reach`] in the view's coordinates: to the right, up, ahead.
+/// [`Reach`] in view coordinates: right, up, ahead.
 #[derive(Clone, Copy, Debug)]
 struct Volume {
     center: Vec3,
@@ -39,8 +39,8 @@ impl Volume {
 }
 
 impl ConeInView {
-    /// Whether nothing of a ball is in the cone: how far its middle is outside of the cone's side is never more than the
-    /// way to the cone.
+    /// Returns true if a ball is outside the cone. The distance of its center from the cone's side never exceeds the
+    /// distance from the cone.
     fn misses(&self, center: Vec3, radius: f32) -> bool {
         let to = center - self.apex;
         let along = to.dot(self.axis);
@@ -49,14 +49,14 @@ impl ConeInView {
     }
 }
 
-/// A ball cut by a plane that it reaches over from outside, `outside` being how far its middle is: the squared radius of what
-/// is inside, if anything is.
+/// Returns the squared radius of the part of a ball inside a plane, if any. `outside` is the distance of the center
+/// outside the plane.
 fn cut(radius2: f32, outside: f32) -> Option<f32> {
     let rest = radius2 - outside * outside;
     (rest >= 0.0).then_some(rest)
 }
 
-/// Calls `hit` with the number of every froxel that the light may reach, in rising order.
+/// Calls `hit` with the index of every froxel that the light may reach, in increasing order.
 pub(super) fn froxels_of(grid: &FroxelGrid, reach: &Reach, view_from_world: DQuat, mut hit: impl FnMut(u32)) {
     let volume = Volume::new(reach, view_from_world);
     let Volume { center, radius_m, .. } = volume;
@@ -66,7 +66,8 @@ pub(super) fn froxels_of(grid: &FroxelGrid, reach: &Reach, view_from_world: DQua
         let Some(in_slice) = cut(radius_m * radius_m, ahead - center.z) else { continue };
         for (row, between) in (0..).zip(&grid.rows) {
             let [low, high] = between.inside(center.y, ahead);
-            // At most one of the two is outside, unless the middle is behind the eye; the farther plane then cuts more.
+            // The center is outside of at most one of the two planes, unless it is behind the eye; the farther plane
+            // then cuts more.
             let (outside, plane) = if low < high { (low, between.planes[0]) } else { (high, between.planes[1]) };
             let outside = outside.min(0.0);
             let Some(in_row) = cut(in_slice, outside) else { continue };
@@ -92,7 +93,7 @@ pub(super) fn froxels_of(grid: &FroxelGrid, reach: &Reach, view_from_world: DQua
     }
 }
 
-/// A ball around what of a tile lies between two distances.
+/// Returns a ball around the part of a tile between two distances.
 fn ball_around(grid: &FroxelGrid, [column, row]: [u32; 2], ahead: [f32; 2]) -> (Vec3, f32) {
     let sides = [grid.across[column as usize], grid.rows[row as usize].sides];
     let corner = |i: usize| {

@@ -1,59 +1,60 @@
-//! What a camera sees, cut into tiles of the picture and slices of distance.
+//! Froxel grid of a camera: tiles of the picture and slices of distance.
 //!
-//! Coordinates are the view's: to the right, up, and *ahead* of the eye, in meters.
+//! Coordinates are those of the view, in meters: right, up, and *ahead* of the eye.
 
 use super::settings::FroxelSettings;
 use crate::gpu_scene::shadow_views::FitCamera;
 use framegraph_shaders::layout::FroxelUniforms;
 use glam::{Vec3, Vec4};
 
-/// Tiles are whole multiples of so many pixels a side.
+/// Granularity of the side of a tile, in pixels.
 const TILE_STEP_PX: u32 = 8;
-/// Froxels overlap by twice this at their sides, in pixels: where a fragment is, is rounded on the way from its vertices, and
-/// a triangle of a hundred meters that passes the eye at one is off by some hundredths of a pixel.
+/// Margin at the sides of froxels in pixels; neighbors overlap by twice this. Interpolation from distant vertices
+/// shifts fragments by some hundredths of a pixel.
 const SIDE_MARGIN_PX: f64 = 0.5;
-/// And by this share of the distance at the ends of slices, of which the logarithm in shaders is off by up to 1e-5.
+/// Margin at the ends of slices, as a fraction of the distance. The logarithm in shaders has a relative error of up to
+/// 1e-5.
 const END_MARGIN: f64 = 1e-4;
 
-/// The froxels of a view.
+/// Froxel grid of a view.
 #[derive(Clone, Debug)]
 pub(super) struct FroxelGrid {
-    /// Tiles across and down, and slices.
+    /// Number of tiles across and down, and of slices.
     pub counts: [u32; 3],
     /// Side of a tile in pixels.
     pub tile_px: u32,
-    /// Distances ahead of the eye at which a slice begins and ends.
+    /// Near and far end of each slice, as distances ahead of the eye.
     pub slices: Vec<[f32; 2]>,
-    /// From the top.
+    /// Rows from the top.
     pub rows: Vec<Between>,
-    /// Four from the left in each; what is beyond the last contains nothing.
+    /// Columns from the left, in groups of four. Padding columns are empty.
     pub columns: Vec<FourColumns>,
-    /// The sides of each column and of each row, as [`Between::sides`].
+    /// Sides of each column and each row, as [`Between::sides`].
     pub across: Vec<[f32; 2]>,
-    /// Rays diverge.
+    /// True for a perspective projection.
     pub is_perspective: bool,
     slice_scale: f32,
     slice_offset: f32,
 }
 
-/// What lies between two planes that contain one of the view's axes.
+/// Region between two planes that contain one of the view's axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Between {
-    /// The planes' unit normals, inward: along the picture's axis and ahead; and offsets, so that the sum is at least 0 inside.
+    /// Unit normals, inward: along the picture's axis and ahead; and offsets, so that the sum is at least 0 inside.
     pub planes: [Vec3; 2],
-    /// Where the planes are: meters aside, for each meter ahead where rays diverge; the lesser first.
+    /// Positions of the planes, the smaller first: in meters, per meter ahead for a perspective projection.
     pub sides: [f32; 2],
 }
 
 /// The planes of four columns, component by component.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FourColumns {
-    /// Along, ahead, offset of the left planes, then of the right ones.
+    /// Normal along and ahead, and offset, of the left planes, then of the right ones.
     pub planes: [[Vec4; 3]; 2],
 }
 
 impl Between {
-    /// Between two places on the picture's axis, in multiples of half the picture.
+    /// Creates the region between two positions on the picture's axis, in multiples of half the picture.
     fn new(low: f64, high: f64, half_extent: f64, is_perspective: bool) -> Self {
         let sides = [low * half_extent, high * half_extent];
         let plane = |at: f64, sign: f64| {
@@ -67,7 +68,7 @@ impl Between {
         Self { planes: [plane(sides[0], 1.0), plane(sides[1], -1.0)], sides: sides.map(|at| at as f32) }
     }
 
-    /// How far inside of both planes a place is.
+    /// Returns the distance of a point inside of both planes.
     pub fn inside(&self, along: f32, ahead: f32) -> [f32; 2] {
         self.planes.map(|plane| plane.x * along + plane.y * ahead + plane.z)
     }
@@ -83,7 +84,7 @@ impl FourColumns {
         Self { planes: [0, 1].map(|side| [0, 1, 2].map(|component| plane(side, component))) }
     }
 
-    /// How far inside of its columns a place is, at the nearer side of each.
+    /// Returns the distance of a point inside of its columns, from the nearer side of each.
     pub fn inside(&self, along: f32, ahead: f32) -> Vec4 {
         let [left, right] = self.planes.map(|[x, a, offset]| x * along + a * ahead + offset);
         left.min(right)
@@ -91,7 +92,7 @@ impl FourColumns {
 }
 
 impl FroxelGrid {
-    /// The froxels of a camera's picture of this size.
+    /// Creates the grid of a camera for a picture of this size.
     pub fn new(camera: &FitCamera<'_>, size_px: [u32; 2], settings: &FroxelSettings) -> Self {
         let size_px = size_px.map(|side| side.max(1));
         let (tile_px, tiles) = layout(size_px, settings.tiles);
@@ -115,7 +116,7 @@ impl FroxelGrid {
         let [near, far] = [settings.near_m, settings.far_m].map(f64::from);
         let log_ratio = if slices > 1 { (far / near).log2() / f64::from(slices - 1) } else { 1.0 };
         let end = |slice: u32| match slice {
-            // Nothing is seen behind the eye from which rays diverge.
+            // A perspective camera sees nothing behind the eye.
             0 if is_perspective => 0.0,
             0 => f64::NEG_INFINITY,
             last if last == slices => f64::INFINITY,
@@ -136,12 +137,12 @@ impl FroxelGrid {
         }
     }
 
-    /// How many froxels there are.
+    /// Returns the number of froxels.
     pub fn count(&self) -> usize {
         self.counts.iter().map(|count| *count as usize).product()
     }
 
-    /// What shaders read of it.
+    /// Returns the grid in the layout of shaders.
     pub fn uniforms(&self, everywhere: u32) -> FroxelUniforms {
         FroxelUniforms {
             counts: self.counts,
@@ -154,7 +155,7 @@ impl FroxelGrid {
     }
 }
 
-/// Side of a tile in pixels, and how many tiles there are across and down: at most `most`, squares, by Filament's rule.
+/// Returns the side of a tile in pixels, and the number of tiles across and down, at most `most`, by Filament's rule.
 fn layout(size_px: [u32; 2], most: u32) -> (u32, [u32; 2]) {
     let ratio = f64::from(size_px[0]) / f64::from(size_px[1]);
     let count = |ratio: f64| ((f64::from(most) * ratio).sqrt() as u32).clamp(1, most.max(1));
@@ -174,7 +175,7 @@ mod tests {
             ([1280, 720], 144, (80, [16, 9])),
             ([1920, 1080], 144, (120, [16, 9])),
             ([3840, 2160], 144, (240, [16, 9])),
-            // Filament's own number.
+            // Filament's own numbers.
             ([1280, 720], 512, (48, [27, 15])),
             ([720, 1280], 144, (80, [9, 16])),
             ([1, 1], 144, (8, [1, 1])),

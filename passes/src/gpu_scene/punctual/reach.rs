@@ -1,35 +1,35 @@
-//! The volume that a light can light.
+//! Volume that a light can reach.
 
 use framegraph_scene::{Aabb, Light, LightKind};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// Added to a spot's outer half angle, in radians: the cosine that shaders compare is off by up to 2e-7, which at an angle
-/// of 0 is six ten-thousandths of a radian.
+/// Margin added to a spot light's outer half angle, in radians. The cosine in shaders has an error of up to 2e-7,
+/// which at angle 0 is 6e-4 rad.
 const CONE_MARGIN_RAD: f64 = 1e-3;
-/// Added to a range, as a share of it and of the distance from the eye: shaders round positions to 2⁻²⁴ of them, and so
-/// does the arithmetic on froxels.
+/// Margin added to a range, as a fraction of it and of the distance from the eye. Shaders and froxels round positions
+/// to a relative 2⁻²⁴.
 const RANGE_MARGIN: f64 = 1e-4;
 const DISTANCE_MARGIN: f64 = 1e-5;
-/// The longest range in meters; squares of longer ones leave f32.
+/// Maximum range in meters; squares of longer ranges overflow f32.
 const LONGEST_M: f64 = 1e15;
 
-/// All places that a light can light lie in this sphere and, of a spot, in the cone too. World axes, about an eye, in
-/// meters; wider than the light by what shaders may be off.
+/// Bounds of the points that a light can reach: a sphere and, for spot lights, a cone. World axes, relative to an eye,
+/// in meters, with margins for rounding in shaders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reach {
-    /// Middle of the sphere, from the eye.
+    /// Center of the sphere, relative to the eye.
     pub center: DVec3,
     /// Its radius.
     pub radius_m: f64,
-    /// A spot's cone.
+    /// Cone of a spot light.
     pub cone: Option<Cone>,
 }
 
-/// Directions about an axis.
+/// Directions around an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cone {
-    /// Where the light is, from the eye.
+    /// Position of the light, relative to the eye.
     pub apex: DVec3,
     /// Unit vector.
     pub axis: DVec3,
@@ -38,8 +38,8 @@ pub(super) struct Cone {
 }
 
 impl Reach {
-    /// Reach of a light seen from `eye` in a scene within `bounds`; none where the light has no end. A spot ends with the
-    /// scene.
+    /// Returns the reach of a light seen from `eye` in a scene within `bounds`; `None` if it is unbounded. A spot
+    /// light ends at the bounds of the scene.
     pub fn of(light: &Light, eye: DVec3, bounds: &Aabb) -> Option<Self> {
         let apex = light.position - eye;
         let widened = |range: f64| (range * (1.0 + RANGE_MARGIN) + apex.length() * DISTANCE_MARGIN).min(LONGEST_M);
@@ -63,7 +63,7 @@ impl Reach {
         }
     }
 
-    /// Whether no place of the box is in the sphere. Boxes that are not finite are touched.
+    /// Returns true if the box is outside the sphere; false for boxes that are not finite.
     pub fn misses(&self, bounds: &Aabb, eye: DVec3) -> bool {
         let center = self.center + eye;
         let nearest = center.clamp(bounds.min.min(bounds.max), bounds.max.max(bounds.min));
@@ -71,8 +71,8 @@ impl Reach {
     }
 }
 
-/// The least sphere around what of a ball of radius 1 is in a cone from its middle: how far along the axis it is centered,
-/// and its radius.
+/// Returns the smallest sphere around the part of a unit ball within a cone from its center: the position of its
+/// center along the axis, and its radius.
 fn around_sector(half_rad: f64) -> (f64, f64) {
     let (sin, cos) = half_rad.sin_cos();
     if half_rad < FRAC_PI_4 {

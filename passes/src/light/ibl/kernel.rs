@@ -12,9 +12,9 @@ use glam::Vec4;
 /// Footprint of a sample as a multiple of its solid angle. Křivánek and Colbert choose 4, which is best for many
 /// samples: the error of a one-texel source is 4 % instead of 11 %. With few samples, 4 would widen the lobe.
 const OVERLAP: f64 = 4.0;
-/// Footprint of a sample in levels of fewer than [`FEW`] samples, as a multiple of its solid angle.
+/// Footprint of a sample in levels of at most [`FEW`] samples, as a multiple of its solid angle.
 const OVERLAP_OF_FEW: f64 = 2.0;
-/// Number of samples below which a level counts as having few.
+/// Maximum number of samples of a level that counts as having few.
 const FEW: u32 = 256;
 /// Turns between consecutive points of the spiral: the golden ratio minus one.
 const GOLDEN_TURNS: f64 = 0.618_033_988_749_894_9;
