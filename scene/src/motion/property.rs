@@ -276,6 +276,7 @@ impl MaterialProperty {
 
     /// Returns true if the property modifies a value written by another property of the material, and must be applied
     /// after it.
+    #[cfg(feature = "gltf")]
     pub(crate) fn is_relative(self) -> bool {
         matches!(self, Self::Factor(place) if FACTORS[place].pointer == STRENGTH)
     }
