@@ -122,7 +122,7 @@ pub fn source(measured: &Measured) -> Result<String, MeasuredError> {
     let rows: String = (0..chosen[0].len()).map(row).collect();
     Ok(format!(
         "//! What presets have, chosen from docs/measurements/accuracy.json; renewed by\n\
-        //! `cargo run -p tests --bin accuracy -- --out docs --presets passes/src/preset/chosen.rs`.\n\n\
+        //! `cargo run -p tests --bin accuracy -- --out docs/measurements --presets passes/src/quality/preset/chosen.rs`.\n\n\
         /// Each group with its option in low, medium, high and ultra.\n\
         #[rustfmt::skip]\n\
         pub const CHOSEN: [(&str, [&str; 4]); {}] = [\n{rows}];\n",

@@ -26,7 +26,11 @@ fn accuracy(args: &[&str]) -> Output {
 #[test]
 fn the_document_is_that_of_its_record() {
     let mut record = record();
-    assert_eq!(DOCUMENT, document(&record), "renew it: cargo run -p tests --bin accuracy -- --out docs --document");
+    assert_eq!(
+        DOCUMENT,
+        document(&record),
+        "renew it: cargo run -p tests --bin accuracy -- --out docs/measurements --document"
+    );
     assert!(record.techniques.len() >= 24, "{} techniques", record.techniques.len());
     // The most common question: samples, error, time, and presets.
     assert!(DOCUMENT.contains("What does ambient occlusion with 7 taps cost against 16? **7 taps"), "it is answered");
@@ -54,8 +58,7 @@ fn the_document_of_a_gpu_is_that_of_its_record() {
 #[test]
 fn presets_are_those_of_the_record() {
     let mut measured = record().budget.expect("docs/measurements/accuracy.json has what frames are chosen from");
-    let renew =
-        "renew them: cargo run -p tests --bin accuracy -- --out docs --presets passes/src/quality/preset/chosen.rs";
+    let renew = "renew them: cargo run -p tests --bin accuracy -- --out docs/measurements --presets passes/src/quality/preset/chosen.rs";
     assert_eq!(CHOSEN, source(&measured).expect("options that there are"), "{renew}");
     for preset in Preset::ALL {
         assert_eq!(preset.measured(&measured, |_| true).expect("options that there are"), preset.frame(), "{renew}");

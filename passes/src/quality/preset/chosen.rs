@@ -1,5 +1,5 @@
 //! What presets have, chosen from docs/measurements/accuracy.json; renewed by
-//! `cargo run -p tests --bin accuracy -- --out docs --presets passes/src/preset/chosen.rs`.
+//! `cargo run -p tests --bin accuracy -- --out docs/measurements --presets passes/src/quality/preset/chosen.rs`.
 
 /// Each group with its option in low, medium, high and ultra.
 #[rustfmt::skip]
