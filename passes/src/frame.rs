@@ -140,6 +140,10 @@ pub struct Settings {
     /// ([`TransparencyMode::TwoPassesOneSide`](framegraph_scene::TransparencyMode)).
     #[cfg_attr(feature = "files", serde(skip))]
     pub blended_depth: bool,
+    /// True if a blended surface tests or writes stencil. Its result depends on the order of draws, so
+    /// order-independent techniques fall back to sorting.
+    #[cfg_attr(feature = "files", serde(skip))]
+    pub blended_stencil: bool,
     /// Technique for blended surfaces: sorted, or order-independent.
     pub transparency: Transparency,
     /// Number of levels of the picture behind refractive surfaces, at most [`scene_levels`] of the frame's size. 0 if
@@ -205,6 +209,7 @@ impl Settings {
         blended: false,
         stencil: false,
         blended_depth: false,
+        blended_stencil: false,
         transparency: Transparency::Sorted,
         scene_levels: 0,
         glass_layers: 1,
@@ -229,6 +234,7 @@ impl Settings {
             blended: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend),
             stencil: scene.uses_stencil(),
             blended_depth: scene.materials.iter().any(|m| m.transparency == TransparencyMode::TwoPassesOneSide),
+            blended_stencil: scene.materials.iter().any(|m| m.alpha == AlphaMode::Blend && m.stencil.is_some()),
             scene_levels: if transmits { scene_levels(size_texels) } else { 0 },
             glass_layers: self.glass_layers.min(glass_instances(scene)),
             size_texels,
@@ -268,18 +274,27 @@ impl Settings {
 
     /// Returns true if blended surfaces have separate passes.
     fn draws_blended_apart(&self) -> bool {
-        self.blended && self.transparency.is_unordered()
+        self.declared_transparency().is_unordered()
+    }
+
+    /// Returns true if drawing blended surfaces after depth of field was requested.
+    fn wants_blending_after_blur(&self) -> bool {
+        self.blended && self.dof.is_some_and(|dof| dof.blended_after && dof.is_seen())
     }
 
     /// Returns true if blended surfaces are drawn after depth of field.
     fn blends_after_blur(&self) -> bool {
-        let wanted = self.dof.is_some_and(|dof| dof.blended_after && dof.is_seen());
-        wanted && self.draws_blended_apart() && self.samples == 1 && self.taa.is_none()
+        self.wants_blending_after_blur() && self.draws_blended_apart() && self.samples == 1 && self.taa.is_none()
     }
 
-    /// Returns the technique for blended surfaces; `Sorted` if there are none.
+    /// Returns true if blended surfaces are sorted although an order-independent technique was requested.
+    fn sorts_for_stencil(&self) -> bool {
+        self.blended && self.blended_stencil && self.transparency.is_unordered()
+    }
+
+    /// Returns the technique for blended surfaces; `Sorted` if there are none, or if stencil needs their order.
     fn declared_transparency(&self) -> Transparency {
-        if self.blended { self.transparency } else { Transparency::Sorted }
+        if self.blended && !self.sorts_for_stencil() { self.transparency } else { Transparency::Sorted }
     }
 
     /// Returns the resolution and the number of levels of the structure, which all effects share.
@@ -353,6 +368,12 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("scene", move |frame, handles| scene(frame, handles, s.scene_levels)),
         Stage::new("transparent", move |frame, handles| {
             transparent(frame, handles, &glass)?;
+            if s.sorts_for_stencil() {
+                let requested = s.transparency.name();
+                let note =
+                    format_args!("blended surfaces are sorted instead of {requested}: their stencil needs an order");
+                frame.graph_mut().note("blended", note);
+            }
             if after_blur { Ok(()) } else { blended(frame, handles, &apart) }
         }),
         Stage::new("resolve", move |frame, handles| resolve(frame, handles, s.tone_resolve && s.samples > 1)),
@@ -360,6 +381,11 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
         Stage::new("measure", move |frame, handles| measure(frame, handles, s.measure)),
         Stage::new("dof", move |frame, handles| {
             dof(frame, handles, s.dof, s.size_texels)?;
+            if s.wants_blending_after_blur() && !after_blur {
+                let note = "blended surfaces are drawn before the blur: drawing them after it needs an order-independent \
+                            technique, one sample and no temporal anti-aliasing";
+                frame.graph_mut().note("dof", note);
+            }
             if after_blur { blended(frame, handles, &apart) } else { Ok(()) }
         }),
         Stage::new("bloom", move |frame, handles| bloom(frame, handles, s.bloom, (s.size_texels, s.taa.is_some()))),

@@ -21,7 +21,7 @@ pub enum Proof {
     /// At most the error of the effect itself: the picture without it is closer to the truth that the effect
     /// estimates.
     Truer,
-    /// As [`Proof::Edges`], unless a measured value more than doubled since it was measured. The effect then appears
+    /// The bound of [`Proof::Edges`], unless a measured value more than doubled since it was measured. The effect then appears
     /// some frames late.
     Late,
 }
@@ -83,7 +83,7 @@ impl Decision {
 pub struct Fact {
     /// The effect.
     pub effect: Effect,
-    /// Whether the effect stays.
+    /// Decision.
     pub decision: Decision,
     /// Bound on the change of the picture if the effect is dropped; for kept effects, the bound a drop would have
     /// had.

@@ -75,7 +75,7 @@ pub enum Irradiance {
     #[default]
     Harmonics,
     /// Last level of the prefiltered cube, where the lobe of roughness 1 approximates irradiance. Needs no more
-    /// samplers or memory, but reads a texture. That level has 16 texels a side in `low`, and 4 in `high` and `ultra`.
+    /// samplers or memory, but reads a texture. The level has 16 texels a side in `low`, and 4 in `high` and `ultra`.
     /// Uniform light has no cube and uses harmonics.
     Cube,
 }

@@ -121,7 +121,7 @@ pub fn source(measured: &Measured) -> Result<String, MeasuredError> {
     };
     let rows: String = (0..chosen[0].len()).map(row).collect();
     Ok(format!(
-        "//! What presets have, chosen from docs/measurements/accuracy.json; renewed by\n\
+        "//! Options of the presets, chosen from docs/measurements/accuracy.json; renewed by\n\
         //! `cargo run -p tests --bin accuracy -- --out docs/measurements --presets passes/src/quality/preset/chosen.rs`.\n\n\
         /// Each group with its option in low, medium, high and ultra.\n\
         #[rustfmt::skip]\n\

@@ -12,14 +12,14 @@ use tests::measure::harmonics::{self, Scene};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
-/// Root mean square of the differences, in codes of 255.
+/// Returns the RMS difference in 8-bit steps.
 fn apart(a: &[u8], b: &[u8]) -> f64 {
     let squares = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum::<f64>();
     (squares / a.len() as f64).sqrt()
 }
 
-/// Surfaces, and the sky behind fog that has the environment's color, look the same whatever the cube is stored in; and so do
-/// surfaces whose diffuse light is the cube's last level. A cube whose codes were taken for colors would be off by dozens.
+/// Surfaces, and the sky behind fog with the environment's color, look equal for all storage formats. So do surfaces
+/// whose diffuse light is the last level of the cube. Reading RGBM without decoding would differ by dozens of steps.
 #[test]
 fn pictures_are_the_same_by_every_format_and_by_the_cube() -> TestResult {
     const TEST: &str = "pictures_are_the_same_by_every_format_and_by_the_cube";

@@ -182,8 +182,8 @@ fn looks() -> Vec<Look> {
     looks
 }
 
-/// The mobile curve has the transfer function in it: its codes are shown as they are, in one pass and in a pass for each effect,
-/// and so they are where gamut mapping needs light in between.
+/// The mobile curve includes the transfer function, so its values are displayed unchanged: in one pass, and with one
+/// pass per effect. Gamut mapping in between decodes and encodes them.
 #[test]
 fn the_mobile_curve_is_encoded_once() -> TestResult {
     let Some(gpu) = gpu("the_mobile_curve_is_encoded_once") else { return Ok(()) };
@@ -286,8 +286,8 @@ fn each_pixel_sees_the_environment_in_its_direction() -> TestResult {
     Ok(())
 }
 
-/// The sun's disc with its halo, over an even background: each pixel is what the formula's mirror says of its direction, and what
-/// is brighter than a half float holds is held. Without a halo the background is even.
+/// The sun's disc with its halo over a uniform background matches the mirror of the formula in each pixel's
+/// direction, clamped to the range of half floats. Without a halo the background is uniform.
 #[test]
 fn the_sun_has_a_disc_and_a_halo_on_demand() -> TestResult {
     let Some(gpu) = gpu("the_sun_has_a_disc_and_a_halo_on_demand") else { return Ok(()) };

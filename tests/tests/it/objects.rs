@@ -1,4 +1,4 @@
-//! Filament's switches of renderables and lights: layers, light channels, and who casts and receives shadows.
+//! Filament's switches of renderables and lights: layers, light channels, casting and receiving shadows.
 
 use crate::stage::{declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch};
@@ -19,7 +19,7 @@ const BLOCK: usize = 1;
 const SUN: usize = 0;
 const LAMP: usize = 1;
 
-/// A block on the ground under a sun that stands to its left, and a lamp on its right.
+/// Returns a block on the ground, with a sun on its left and a spot light on its right.
 fn scene() -> Scene {
     let mut scene = Scene::default();
     let ground = scene.add_mesh(geometry::plane(Vec2::splat(8.0), 1, Vec2::ONE));
@@ -86,7 +86,8 @@ fn hidden_layers_neither_show_nor_cast() -> TestResult {
     Ok(())
 }
 
-/// Shadows of sun and lamp are gone where the block casts none and where the ground receives none, and nothing else changes.
+/// Shadows of both lights disappear if the block does not cast or the ground does not receive them; nothing else
+/// changes.
 #[test]
 fn casting_and_receiving_shadows_can_be_off() -> TestResult {
     let Some(gpu) = gpu("casting_and_receiving_shadows_can_be_off") else { return Ok(()) };
@@ -95,14 +96,14 @@ fn casting_and_receiving_shadows_can_be_off() -> TestResult {
     scene.instances[BLOCK].draw.casts_shadows = false;
     let cast_off = shoot(&gpu, &scene, 1, shadows())?;
     let [brighter, darker] = compared(&cast_off, &both);
-    // The sun's shadow is to the right of the block, the lamp's to the left.
+    // The sun's shadow is right of the block, the spot light's left of it.
     let columns = |range: std::ops::Range<usize>| brighter.iter().filter(|at| range.contains(&(*at % 64))).count();
     assert!(columns(0..26) > 10 && columns(38..64) > 10 && darker.is_empty(), "{brighter:?} {darker:?}");
     scene.instances[BLOCK].draw.casts_shadows = true;
     scene.instances[GROUND].draw.receives_shadows = false;
     let receive_off = shoot(&gpu, &scene, 1, shadows())?;
     assert_eq!(compared(&receive_off, &cast_off), [const { Vec::<usize>::new() }; 2]);
-    // Contact shadows are received, too.
+    // Contact shadows are switched off as well.
     scene.instances[BLOCK].draw.receives_shadows = false;
     let contact = ShadowSettings { contact: Some(ContactShadows::FILAMENT), ..shadows() };
     let with_contact = shoot(&gpu, &scene, 1, contact)?;
@@ -110,7 +111,7 @@ fn casting_and_receiving_shadows_can_be_off() -> TestResult {
     Ok(())
 }
 
-/// An object is lit by the lights it shares a channel with, sun and lamp alike.
+/// A light affects an object only if both share a channel, for directional and punctual lights.
 #[test]
 fn lights_light_objects_of_their_channels() -> TestResult {
     let Some(gpu) = gpu("lights_light_objects_of_their_channels") else { return Ok(()) };

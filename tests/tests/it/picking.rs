@@ -1,4 +1,4 @@
-//! Picking: what is under a pixel, how deep and where, against rays that meet known planes.
+//! Picking: instance, depth and position at a pixel, compared with rays through known planes.
 
 use crate::stage::{gpu, lighting};
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
@@ -18,13 +18,14 @@ const SIZE_PX: [u32; 2] = [64, 48];
 const MASKED: usize = 1;
 const MOVED: usize = 2;
 
-/// A wall at z = −4 over the left of the picture; before it at z = −1 a masked one with holes on the right of its middle and a
-/// blended one over all; and at z = −2, above the middle, one whose vertices are moved as joints and morph targets do.
+/// Returns a scene of planes. An opaque wall at z = −4 covers the left half. At z = −1 a masked plane with holes is
+/// right of the center, and a blended plane covers everything. A plane at z = −2 above the center has deformed
+/// vertices.
 fn scene() -> Scene {
     let mut scene = Scene::default();
     let quad = |scene: &mut Scene, half: Vec2| {
         let mut mesh = geometry::plane(half * 2.0, 1, Vec2::ONE);
-        // Upright, toward the viewer.
+        // Faces the camera.
         mesh.positions.iter_mut().for_each(|p| *p = Vec3::new(p.x, -p.z, 0.0));
         mesh.bounds = Aabb::from_points(&mesh.positions);
         scene.add_mesh(mesh)
@@ -62,8 +63,8 @@ fn meets(camera: &Camera, [x, y]: [u32; 2], z: f64) -> DVec3 {
     camera.eye + way * ((z - camera.eye.z) / way.z)
 }
 
-/// Pixels of opaque, masked, moved and blended things, of a hole and of the sky, name what is there; depth and place are those
-/// of the ray through the middle of the pixel.
+/// Picks return the visible instance for opaque, masked, deformed and blended surfaces, for a hole and for the sky.
+/// Depth and position match the ray through the pixel center.
 #[test]
 fn picks_name_what_is_seen() -> TestResult {
     let Some(gpu) = gpu("picks_name_what_is_seen") else { return Ok(()) };

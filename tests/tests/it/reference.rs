@@ -54,8 +54,8 @@ fn documented(command: &str, outcomes: &[Outcome]) {
 
 /// Compares each number of a row, within the rounding of other drivers at edges and in filters. The bounds are a decibel, a
 /// tenth of FLIP and of the errors, and a tenth of the shares of pixels or one in 2000. Above 55 dB only single 8-bit steps
-/// differ, and the instruction set of the processor that runs the software driver decides some of them. PSNR counts as 55 dB
-/// there, and FLIP may differ by 0.001.
+/// differ, and the processor decides some of them: one driver on two machines gave FLIP 0.00219 and 0.00259 for the same
+/// picture. PSNR counts as 55 dB there, and FLIP may differ by 5e-4, a sixth of that of random steps at 62 dB.
 fn printed(cells: &[&str], found: &Metrics) {
     let number = |cell: &str| cell.trim_end_matches(" %").parse().unwrap_or_else(|error| panic!("{cell}: {error}"));
     let printed: Vec<f64> = cells[2..].iter().map(|cell| number(cell)).collect();
@@ -64,7 +64,7 @@ fn printed(cells: &[&str], found: &Metrics) {
     let near = |at: usize, found: f64, least: f64| (printed[at] - found).abs() <= 0.1 * printed[at] + least;
     let shares = near(2, 100.0 * found.off_2, 0.05) && near(3, 100.0 * found.off_8, 0.05);
     let errors = near(4, p50, 2e-4) && near(5, p95, 2e-4) && near(6, p99, 2e-4);
-    let flip_slack = if printed[0].min(found.psnr_db) > 55.0 { 1e-3 } else { 5e-5 };
+    let flip_slack = if printed[0].min(found.psnr_db) > 55.0 { 5e-4 } else { 5e-5 };
     assert!(near(1, found.flip, flip_slack) && shares && errors, "{cells:?}: {found:?}");
 }
 

@@ -1,9 +1,9 @@
-//! Stencil states of materials: what one object marks cuts another, and frames without stencil stay what they are.
+//! Stencil states of materials: marks of one object cut another, and frames without stencil are unchanged.
 
 use crate::stage::{declared, gpu, lighting};
 use framegraph::{Caps, Counts, Format, Options, Plan, Scratch, compile};
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, LightSearch, Settings, World};
+use framegraph_passes::{CameraView, LightSearch, Settings, Transparency, World};
 use framegraph_scene::material::{Stencil, StencilCompare, StencilFace, StencilOp};
 use framegraph_scene::{AlphaMode, Camera, DrawOptions, Environment, Material, Projection, Scene, geometry, progress};
 use framegraph_wgpu::{Gpu, Imports, read_texture};
@@ -17,7 +17,7 @@ const SIZE_PX: [u32; 2] = [64, 48];
 const GREEN: usize = 0;
 const RED: usize = 1;
 
-/// A green window before the middle of a red wall, both unlit; `stencil` are their states.
+/// Returns a green window behind the middle of a red wall, both unlit, with the given stencil states.
 fn scene(alpha: AlphaMode, stencil: [Option<Stencil>; 2]) -> Scene {
     let mut scene = Scene::default();
     let colors = [Vec3::Y, Vec3::X].map(|color| color.extend(1.0));
@@ -32,16 +32,16 @@ fn scene(alpha: AlphaMode, stencil: [Option<Stencil>; 2]) -> Scene {
     };
     let green = scene.add_material(of(colors[GREEN], AlphaMode::Opaque, stencil[GREEN]));
     let red = scene.add_material(of(colors[RED], alpha, stencil[RED]));
-    // Seen from above.
+    // The camera looks down.
     scene.add_instance("window", window, green, DMat4::from_translation(DVec3::new(0.0, -0.5, 0.0)));
     scene.add_instance("wall", wall, red, DMat4::IDENTITY);
     scene.instances[GREEN].draw = DrawOptions { priority: 0, ..DrawOptions::default() };
     scene
 }
 
-/// How many texels are green, red and black, and the counts of the plan.
-fn shoot(gpu: &Gpu, scene: &Scene, prepass: bool) -> Result<([usize; 3], Counts), Box<dyn Error>> {
-    let settings = Settings { shadows: None, fxaa: false, prepass, ..Settings::DEFAULT };
+/// Returns the numbers of green, red and black texels, and the counts of the plan.
+fn shoot(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<([usize; 3], Counts), Box<dyn Error>> {
+    let settings = Settings { shadows: None, fxaa: false, ..settings };
     let lighting = lighting(gpu, &Environment::uniform(DVec3::splat(1.0))?, &settings.shading)?;
     let view = ViewSettings {
         camera: Camera::look_at(DVec3::Y * 3.0, DVec3::ZERO, DVec3::Z, Projection::perspective(0.9, 0.1))?,
@@ -70,8 +70,8 @@ fn shoot(gpu: &Gpu, scene: &Scene, prepass: bool) -> Result<([usize; 3], Counts)
     Ok((counts, plan.counts()))
 }
 
-/// A window that lies behind a wall marks what it covers before the wall is drawn; the wall is drawn where no mark is, so the
-/// window is seen through it. With a prepass, without, and where the wall blends. A mark that is not written cuts nothing.
+/// A window behind a wall marks its texels before the wall is drawn. The wall skips marked texels, so the window is visible
+/// through it: with a prepass, without one, and if the wall blends. A mark that is not written cuts nothing.
 #[test]
 fn what_one_object_marks_cuts_another() -> TestResult {
     let Some(gpu) = gpu("what_one_object_marks_cuts_another") else { return Ok(()) };
@@ -80,22 +80,35 @@ fn what_one_object_marks_cuts_another() -> TestResult {
     let unmarked = StencilFace { compare: StencilCompare::NotEqual, ..StencilFace::default() };
     let unmarked = Stencil { reference: 1, ..Stencil::both(unmarked) };
     let all = (SIZE_PX[0] * SIZE_PX[1]) as usize;
-    let (plain, without) = shoot(&gpu, &scene(AlphaMode::Opaque, [None; 2]), true)?;
+    let prepass = |prepass| Settings { prepass, ..Settings::DEFAULT };
+    let (plain, without) = shoot(&gpu, &scene(AlphaMode::Opaque, [None; 2]), prepass(true))?;
     assert_eq!(plain, [0, all, 0]);
-    let (unwritten, with) =
-        shoot(&gpu, &scene(AlphaMode::Opaque, [Some(Stencil { write: false, ..mark }), Some(unmarked)]), true)?;
+    let (unwritten, with) = shoot(
+        &gpu,
+        &scene(AlphaMode::Opaque, [Some(Stencil { write: false, ..mark }), Some(unmarked)]),
+        prepass(true),
+    )?;
     assert_eq!(unwritten, [0, all, 0]);
-    // Blended surfaces may write stencil, so the color pass attaches depth anew in the same step.
+    // Blended surfaces may write stencil, so the color pass attaches depth as writable, in the same step.
     assert_eq!((with.passes, with.steps), (without.passes, without.steps));
-    for (alpha, prepass) in [(AlphaMode::Opaque, true), (AlphaMode::Opaque, false), (AlphaMode::Blend, true)] {
-        let ([green, red, black], _) = shoot(&gpu, &scene(alpha, [Some(mark), Some(unmarked)]), prepass)?;
-        assert!(green > 100 && green < all / 2, "{alpha:?} {prepass}: {green} texels");
-        assert_eq!((green + red, black), (all, 0), "{alpha:?} {prepass}");
+    // Order-independent techniques fall back to sorting, since the marks of other objects come first.
+    let unordered = |transparency| Settings { transparency, ..Settings::DEFAULT };
+    for (alpha, settings) in [
+        (AlphaMode::Opaque, prepass(true)),
+        (AlphaMode::Opaque, prepass(false)),
+        (AlphaMode::Blend, prepass(true)),
+        (AlphaMode::Blend, unordered(Transparency::Weighted)),
+        (AlphaMode::Blend, unordered(Transparency::Peeled { layers: 2 })),
+    ] {
+        let ([green, red, black], _) = shoot(&gpu, &scene(alpha, [Some(mark), Some(unmarked)]), settings)?;
+        let case = format!("{alpha:?}, prepass {}, {}", settings.prepass, settings.transparency.name());
+        assert!(green > 100 && green < all / 2, "{case}: {green} texels");
+        assert_eq!((green + red, black), (all, 0), "{case}");
     }
     Ok(())
 }
 
-/// Only a scene whose materials use stencil has depth with stencil, whose plane is cleared and dropped like that of depth.
+/// The depth texture has a stencil plane only if a material of the scene uses stencil. The plane is cleared and discarded.
 #[test]
 fn only_scenes_with_stencil_have_a_stencil_plane() {
     let depth = |stencil| {

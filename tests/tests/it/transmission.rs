@@ -218,7 +218,7 @@ fn rough_glass_blurs_by_its_distance_from_what_is_behind() -> TestResult {
         let shading = Shading { transmission_blur: blur, ..Shading::default() };
         let settings = Settings { shading, ..Settings::default() };
         let row = middle_row(&gpu, &scene, settings.for_scene(&scene, size_px))?;
-        // What the pane covers: more than 40 pixels about the middle.
+        // Texels covered by the pane: more than 40 around the center.
         let covered: Vec<f64> = row[row.len() / 2 - 20..row.len() / 2 + 20].iter().map(|c| f64::from(c.x)).collect();
         let (dark, bright) = (covered[0], covered[39]);
         assert!(bright > 4.0 * dark, "both floors are seen: {dark} {bright}");

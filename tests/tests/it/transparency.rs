@@ -1,4 +1,4 @@
-//! Blended surfaces in any order: pictures against rays that gather every layer, and what the plan makes of the passes.
+//! Order-independent transparency: pictures compared with rays that collect every layer, and counts of the plan.
 
 mod counts;
 mod lens;
@@ -25,7 +25,7 @@ type TestResult = Result<(), Box<dyn Error>>;
 
 const SIZE_PX: [u32; 2] = [64, 48];
 
-/// An unlit surface: its color is its radiance, whatever the light is.
+/// Returns an unlit surface: its color is its radiance under any light.
 fn clear(color: Vec3, alpha: f32) -> Material {
     Material {
         base_color: color.extend(alpha),
@@ -50,7 +50,7 @@ const PAINT: [Vec3; 6] = [
     Vec3::new(0.2, 1.0, 1.0),
 ];
 
-/// A box with a color for each face, so that their order shows.
+/// Returns a box with one color per face, so that their order is visible.
 fn painted(half: Vec3) -> Mesh {
     let mesh = cuboid(half);
     let face = |normal: &Vec3| {
@@ -209,12 +209,12 @@ fn stack(layers: &[(Vec3, f32, f64)]) -> Scene {
     scene
 }
 
-/// What layers come to over black, the first in front.
+/// Returns the composite of layers over black, with the first in front.
 fn over(layers: &[(Vec3, f32, f64)]) -> Vec3 {
     layers.iter().rev().fold(Vec3::ZERO, |behind, (color, alpha, _)| behind.lerp(*color, *alpha))
 }
 
-/// Hard inputs: one layer, layers at equal depth, a layer that hides all, depths from centimeters to hundreds of meters.
+/// Hard inputs: one layer, layers at equal depth, an opaque layer, depths from centimeters to hundreds of meters.
 #[test]
 fn hard_stacks() -> TestResult {
     let Some(gpu) = gpu("hard_stacks") else { return Ok(()) };

@@ -1,30 +1,30 @@
-//! What is seen through a slab with rough faces: how sharp an edge behind it is, by Walter's microfacet BTDF.
+//! Sharpness of an edge behind a slab with a rough face, by Walter's microfacet BTDF.
 //!
 //! Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough Surfaces", 2007.
 
 use std::f64::consts::PI;
 
-/// Rings of the grid of facets.
+/// Number of rings of the grid of facets.
 const RINGS: u32 = 4000;
 
-/// A slab seen straight on: a face of GGX toward the eye, a flat one behind.
+/// A slab seen straight on: a GGX face toward the eye and a flat face behind.
 #[derive(Clone, Copy, Debug)]
 pub struct Slab {
     /// Perceptual roughness of the face toward the eye; the GGX parameter is its square.
     pub roughness: f64,
     /// Index of refraction.
     pub ior: f64,
-    /// From face to face, in m.
+    /// Thickness in meters.
     pub thickness_m: f64,
-    /// From the far face to what is behind, in m.
+    /// Distance from the far face to the background in meters.
     pub behind_m: f64,
 }
 
 impl Slab {
-    /// Share of the light seen through a point of the slab that comes from places behind it less than `x` m to the side, for
-    /// each `x`: what is seen of an edge, with each point's distance from it.
+    /// Returns, for each `x`, the fraction of light through a point of the slab that comes from background positions
+    /// less than `x` m to the side. This is the profile of an edge over the distance from it.
     ///
-    /// Facets are summed up ring by ring about the normal, over which the share of a ring has a closed form.
+    /// Sums facets in rings around the normal; the fraction of a ring has a closed form.
     pub fn edge(&self, xs: &[f64]) -> Vec<f64> {
         let Self { roughness, ior, thickness_m, behind_m } = *self;
         let alpha2 = roughness.powi(4);
@@ -33,14 +33,14 @@ impl Slab {
             let u = (f64::from(ring) + 0.5) / f64::from(RINGS);
             let tilt = 0.5 * PI * u.powi(3);
             let (sin, cos) = tilt.sin_cos();
-            // Toward the normal by the difference of the angles at the facet.
+            // Refracts toward the normal, by the difference of the angles at the facet.
             let inside = tilt - (sin / ior).asin();
             let leaving = ior * inside.sin();
             if leaving >= 1.0 {
                 continue;
             }
             let d = alpha2 / (PI * (cos * cos * (alpha2 - 1.0) + 1.0).powi(2));
-            // The eye is over the normal: its own masking is none, and |i·n| is one.
+            // The eye is on the normal: its masking is 1, and |i·n| is 1.
             let passed = (1.0 - fresnel(cos, ior)) * (1.0 - fresnel(inside.cos(), 1.0 / ior));
             let weight = d * cos * masking(inside, alpha2) * passed * sin * u * u;
             let radius = thickness_m * inside.tan() + behind_m * leaving.asin().tan();
@@ -53,7 +53,7 @@ impl Slab {
     }
 }
 
-/// Smith's masking of GGX at an angle from the normal.
+/// Returns Smith masking of GGX at an angle from the normal.
 fn masking(angle: f64, alpha2: f64) -> f64 {
     2.0 / (1.0 + (1.0 + alpha2 * angle.tan().powi(2)).sqrt())
 }

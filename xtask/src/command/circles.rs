@@ -78,6 +78,32 @@ mod tests {
         assert!(told.is_empty(), "files that use each other:\n\n{}", told.join("\n\n"));
     }
 
+    /// Returns the uses of a folder of `passes` by one that stands before it in `order`.
+    fn upward(order: &[&str]) -> Vec<String> {
+        let read = Crate::read(&workspace::root(), Path::new("passes/src/lib.rs")).expect("the sources can be read");
+        let place = |file: &Path| {
+            let folder = file.strip_prefix("passes/src").ok()?.components().next()?.as_os_str().to_str()?;
+            order.iter().position(|name| folder.trim_end_matches(".rs") == *name)
+        };
+        let uses = uses(&read);
+        let files = uses.keys().map(|(from, to)| [&read.files[*from], &read.files[*to]]);
+        let upward = files.filter(|files| matches!(files.map(|file| place(file)), [Some(from), Some(to)] if from < to));
+        upward.map(|[from, to]| format!("{} uses {}", from.display(), to.display())).collect()
+    }
+
+    /// The table of ARCHITECTURE.md lists the folders of `passes` from the bottom up.
+    #[test]
+    fn folders_of_passes_use_only_those_above_their_row() {
+        let map = include_str!("../../../ARCHITECTURE.md");
+        let (_, after) = map.split_once("a folder uses only those above its row:").expect("the map has the table");
+        let rows = after.lines().skip_while(|line| !line.starts_with("| `")).take_while(|line| line.starts_with("| `"));
+        let mut order: Vec<&str> = rows.filter_map(|row| row.split('`').nth(1)).collect();
+        assert!(order.len() >= 10, "{order:?}");
+        assert_eq!(upward(&order), [""; 0], "the map and the uses disagree");
+        order.reverse();
+        assert!(upward(&order).len() > 50, "the wrong order is noticed");
+    }
+
     #[test]
     fn a_cycle_is_reported_with_its_uses() {
         let tree = crate::tree::Tree::new(&[

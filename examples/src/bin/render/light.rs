@@ -75,7 +75,7 @@ pub enum Sun {
 /// Visibility of the sun's disk and halo.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Disk {
-    /// As the light states.
+    /// The light states it.
     #[default]
     Own,
     /// Not drawn.

@@ -1,4 +1,4 @@
-//! What is seen at pixels of the picture: `--pick`.
+//! Picking of objects at pixels: `--pick`.
 
 use crate::args::Args;
 use crate::run::{Failure, Prepared, device};

@@ -43,7 +43,7 @@ impl std::fmt::Display for DropReason {
 /// Lights of a scene for cameras that share them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Selection<'a> {
-    /// Lights that may contribute. Those without a finite range come first, the others in scene order.
+    /// Lights that may contribute: those without a finite range first, the others in scene order.
     pub kept: Vec<&'a Light>,
     /// Number of lights without a finite range.
     pub everywhere: usize,

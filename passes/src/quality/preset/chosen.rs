@@ -1,4 +1,4 @@
-//! What presets have, chosen from docs/measurements/accuracy.json; renewed by
+//! Options of the presets, chosen from docs/measurements/accuracy.json; renewed by
 //! `cargo run -p tests --bin accuracy -- --out docs/measurements --presets passes/src/quality/preset/chosen.rs`.
 
 /// Each group with its option in low, medium, high and ultra.

@@ -8,7 +8,6 @@ use super::table::*;
 use Domain::{Direction, Linear, Values, Vector};
 
 /// Precision of atan2 and acos in WGSL: 4096 ulp, here of an angle divided by a full turn.
-/// What WGSL promises of atan2 and acos: 4096 ulp, here of an angle over a full turn.
 const ANGLE: Bound = Bound { absolute: 5e-4, relative: 0.0, period: 1.0 };
 /// Precision of sin and cos in WGSL.
 const SINE: Bound = bound(1.5e-3, 0.0);

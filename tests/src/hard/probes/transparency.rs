@@ -1,4 +1,4 @@
-//! What blends surfaces in any order.
+//! Probes of order-independent transparency.
 
 use super::{MOST, NONE, Probe, Values, both, bounded, in_half, is_share};
 

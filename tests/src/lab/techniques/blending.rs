@@ -1,4 +1,4 @@
-//! How blended surfaces are put in order.
+//! Techniques for blended surfaces.
 
 use super::{Technique, base, nowhere, pictures};
 use crate::lab::studio::Truth;
@@ -6,17 +6,17 @@ use framegraph_passes::Transparency;
 use framegraph_passes::effects::transparency::{MomentPrecision, MomentTransparency};
 use framegraph_wgpu::Gpu;
 
-/// Layers that no ray through `panes` has more of.
+/// Upper bound on the layers along any ray through the scene `panes`.
 const ALL_LAYERS: u8 = 16;
 
-/// Moments of 32 bits are measured where the device blends them.
+/// Returns the techniques. Moments in 32 bits are included if the device can blend them.
 pub(super) fn techniques(gpu: &Gpu) -> Vec<Technique> {
     let setup = base("panes");
     let mut truth = setup;
     truth.settings.transparency = Transparency::Peeled { layers: ALL_LAYERS };
     let mut own = pictures(
         "transparency",
-        "How blended surfaces are put in order: crossing panes, and a ball within a ball.",
+        "Technique for blended surfaces: crossing panes, and a sphere within a sphere.",
         ("depth peeling with 16 layers, more than any pixel has.", Truth::Frame(truth)),
         setup,
         &[

@@ -21,8 +21,8 @@ fn storage() -> Technique {
     half.light.image.format = EnvironmentFormat::Half;
     pictures(
         "environment-storage",
-        "Storage of the prefiltered environment: bytes a texel, and what the picture loses. RGBM holds 0 to the brightest \
-         channel of the cube, in eight bits.",
+        "Storage of the prefiltered environment: bytes per texel, and the error of the picture. RGBM has \
+         eight bits per channel and a range up to the brightest channel of the cube.",
         ("half floats.", Truth::Frame(half)),
         half,
         &[
@@ -41,7 +41,7 @@ fn storage() -> Technique {
     )
 }
 
-/// Relative error of luminance midway between two texels, of which one is brighter by `stops`: the mean is the truth.
+/// Returns the RMS relative error of luminance midway between two texels that differ by `stops`. The truth is their mean.
 fn midway(stops: f64, kept: &dyn Fn(DVec3, DVec3) -> DVec3) -> f64 {
     let tint = DVec3::new(1.0, 0.8, 0.5);
     let luminance = |c: DVec3| c.dot(DVec3::new(0.2126, 0.7152, 0.0722));
@@ -54,7 +54,7 @@ fn midway(stops: f64, kept: &dyn Fn(DVec3, DVec3) -> DVec3) -> f64 {
 }
 
 fn filtering() -> Technique {
-    /// Stops from the sky to the light about the sun.
+    /// Difference between the sky and the aureole of the sun, in stops.
     const STOPS: f64 = 6.0;
     let choice = |name: &str, kept: fn(DVec3, DVec3) -> DVec3| {
         number(name, move |_: &Gpu| Ok(Measured::exact(midway(STOPS, &kept))))
@@ -68,19 +68,19 @@ fn filtering() -> Technique {
             let of = |c: DVec3| quantize_rg11b10ufloat(c, false).truncate();
             0.5 * (of(a) + of(b))
         }),
-        choice("RGBM, filtered as colors", |a, b| {
-            0.5 * (linear_from_rgbm(codes_of(a)) + linear_from_rgbm(codes_of(b)))
+        choice("RGBM, decoded before filtering", |a, b| {
+            0.5 * (linear_from_rgbm(stored(a)) + linear_from_rgbm(stored(b)))
         }),
-        choice("RGBM, filtered as codes", |a, b| linear_from_rgbm(0.5 * (codes_of(a) + codes_of(b))))
+        choice("RGBM, filtered as stored", |a, b| linear_from_rgbm(0.5 * (stored(a) + stored(b))))
             .counted("linear_from_rgbm", false),
     ];
-    let what = "The same formats midway between two texels that are six stops apart, as beside the sun: relative error of \
-                luminance. Devices filter RGBM as codes.";
+    let what = "The same formats, interpolated midway between two texels that are six stops apart, as beside the \
+                sun: relative error of luminance. Devices interpolate the encoded values of RGBM.";
     formula("environment-filter", what, "the mean of the two colors.", "share, RMS", choices)
 }
 
-fn codes_of(color: DVec3) -> DVec4 {
-    DVec4::from_array(rgbm_bytes(color).map(|code| f64::from(code) / 255.0))
+fn stored(color: DVec3) -> DVec4 {
+    DVec4::from_array(rgbm_bytes(color).map(|byte| f64::from(byte) / 255.0))
 }
 
 fn irradiance() -> Technique {
@@ -114,9 +114,9 @@ fn irradiance() -> Technique {
         cube("cube of 16², 6 KiB", 256, 5),
         cube("cube of 32², 24 KiB", 512, 5),
     ];
-    let what = "Source of diffuse light from the environment, under a bright disc of 30°: the largest error, and as bias the \
-                lowest value, both as shares of the peak. Harmonics take no texture and no sampler; bytes of cubes are those \
-                of R11G11B10F. A cube of its own takes a texture and a sampler more; the frame reads the last level of the \
-                prefiltered cube, which holds the same and takes neither.";
+    let what = "Source of diffuse light from the environment, under a bright disc of 30°: the largest error, and as \
+                bias the lowest value, both relative to the peak. Harmonics need no texture and no sampler. Bytes of \
+                cubes are for R11G11B10F. A separate cube needs a texture and a sampler; the frame instead reads the \
+                last level of the prefiltered cube, which holds the same values.";
     formula("irradiance", what, "irradiance by quadrature over the sphere.", "share of the peak", choices)
 }

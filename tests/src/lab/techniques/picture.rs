@@ -122,9 +122,9 @@ fn tone_fit() -> Technique {
             .counted("srgb_from_linear", false),
         choice("mobile, with sRGB in it", ToneMap::Mobile).counted("tone_map_mobile", false),
     ];
-    let what = "A tone curve with the transfer function in it, x / (x + 0.155) · 1.019, against the curve that it is close to, \
-                over random colors of sixteen stops.";
-    formula("tone-fit", what, "ACES as fitted by Narkowicz, sRGB encoded.", "codes, RMS", choices)
+    let what = "The mobile tone curve x / (x + 0.155) · 1.019, which includes the transfer function, against the curve that \
+                it approximates, over random colors of sixteen stops.";
+    formula("tone-fit", what, "ACES as fitted by Narkowicz, sRGB encoded.", "8-bit steps, RMS", choices)
 }
 
 fn table_coordinates() -> Technique {

@@ -56,9 +56,11 @@ fn handed_on_occlusion_is_shaded() -> TestResult {
     let (up, down) = (picture(bent(1.0))?, picture(bent(-1.0))?);
     assert!(sum(&up) > sum(&down), "reflections of what is open are seen, and of what is closed not");
     // Filament takes the minimum of cone and scalar occlusion, so mirrors, whose cone has no width, keep contact
-    // shadows. Both are rounded to 8 bits.
+    // shadows. Rounding to 8 bits may brighten single channels by a step: one of 57,600 on one processor, none on another.
+    let brighter = up.iter().zip(&half).filter(|(bent, plain)| bent > plain).count();
     assert!(up.iter().zip(&half).all(|(bent, plain)| *bent <= plain.saturating_add(1)), "bent normals only darken");
-    assert!(sum(&up) <= sum(&half) + half.len() as u64 / 100, "bent normals brighten few channels by rounding");
+    assert!(brighter * 10_000 < half.len(), "{brighter} of {} channels are a step brighter", half.len());
+    assert!(sum(&up) < sum(&half), "bent normals darken");
     Ok(())
 }
 

@@ -1,15 +1,15 @@
-//! Blur of things behind rough bodies, against Walter's microfacet BTDF.
+//! Blur of the background behind rough bodies, compared with Walter's microfacet BTDF.
 
 use framegraph_shaders::reference::refraction::{seen_transmission_spread, transmission_spread};
 use std::f64::consts::TAU;
 use truth::slab::Slab;
 
-/// From the eye to the pane, in m.
+/// Distance from the eye to the pane in meters.
 const EYE_M: f64 = 1.0;
-/// Places about the edge.
+/// Number of positions across the edge.
 const PLACES: i32 = 80;
 
-/// Share of a Gaussian of deviation one that lies below `x`.
+/// Returns the cumulative standard normal distribution.
 fn below(x: f64) -> f64 {
     let (steps, from) = (400, -8.0_f64);
     let x = x.clamp(from, 8.0);
@@ -19,8 +19,8 @@ fn below(x: f64) -> f64 {
     (inner + density(from) + density(x)) * width / 3.0
 }
 
-/// Root mean square by which an edge behind the slab is off, as a share of its step, over a quarter of the view to each side:
-/// by the way within the body and behind it, by the way behind it alone, by Filament's angle, and without any blur.
+/// Returns RMS errors of an edge behind the slab, relative to its step, over a quarter of the view on each side.
+/// Blurs: distance inside and behind the body, distance behind it alone, Filament's angle, none.
 fn off(slab: &Slab) -> [f64; 4] {
     let Slab { roughness, ior, thickness_m, behind_m } = *slab;
     let whole_m = EYE_M + thickness_m + behind_m;

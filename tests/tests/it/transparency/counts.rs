@@ -1,4 +1,4 @@
-//! What plans make of the passes over blended surfaces.
+//! Plans of the passes over blended surfaces.
 
 use crate::stage::plan;
 use framegraph::{Caps, Counts, Options, Plan};
@@ -24,8 +24,8 @@ fn planned(transparency: Transparency, samples: u8, caps: &Caps) -> Plan {
 ///                             depth          clear      discard
 /// compose (+ post)            output         don't care STORE
 ///
-/// Moments store depth too, for the step that shades and loads it: its tests read it. A peeled layer clears depth of its own, which
-/// the next one samples; color is loaded and stored between layers.
+/// Moments also store depth, for the step that shades and tests against it. A peeled layer clears its own depth,
+/// which the next layer samples; color is loaded and stored between layers.
 #[test]
 fn sums_on_a_device_that_samples_them() {
     for samples in [1, 4] {

@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 
 const DOCUMENT: &str = include_str!("../../../../docs/design/lens.md");
 
-/// A pane in focus over the left half of bars that are far behind it.
+/// Returns a pane in focus over the left half of distant bars.
 fn scene() -> Scene {
     let mut scene = Scene { name: "pane".into(), ..Scene::default() };
     let bar = scene.add_mesh(plane(Vec2::new(2.0, 20.0), 1, Vec2::ONE));
@@ -29,7 +29,7 @@ fn scene() -> Scene {
     scene
 }
 
-/// Drawn after the blur, a pane in focus is as sharp as the lens sees it; before, it is blurred like what is behind it.
+/// Drawn after the blur, a pane in focus is as sharp as through the lens; drawn before, it is blurred like the bars.
 #[test]
 fn a_pane_in_focus() -> TestResult {
     let Some(gpu) = gpu("a_pane_in_focus") else { return Ok(()) };

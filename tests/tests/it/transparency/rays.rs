@@ -1,16 +1,16 @@
-//! Unlit pictures of triangles by rays that gather every surface they meet: no rasterizer, no blending.
+//! Unlit pictures of triangles, by rays that collect every surface. Uses no rasterizer and no blending.
 
 use framegraph_scene::{AlphaMode, Scene};
 use glam::{DVec2, DVec3, Vec3};
 
-/// A surface that a ray meets: how far away, its color and its alpha.
+/// A surface hit by a ray: distance, color and alpha.
 type Hit = (f64, DVec3, f64);
 
-/// Places of the samples of a pixel, those of Vulkan's standard pattern.
+/// Sample positions within a pixel, as in Vulkan's standard pattern.
 const FOUR: [DVec2; 4] =
     [DVec2::new(0.375, 0.125), DVec2::new(0.875, 0.375), DVec2::new(0.125, 0.625), DVec2::new(0.625, 0.875)];
 
-/// Radiance of every pixel over black, with one or four samples a pixel.
+/// Returns the radiance of every pixel over black, with one or four samples per pixel.
 pub fn picture(scene: &Scene, size_px: [u32; 2], samples: u8) -> Vec<Vec3> {
     let [width, height] = size_px;
     let camera = &scene.cameras[0];
@@ -34,8 +34,8 @@ pub fn picture(scene: &Scene, size_px: [u32; 2], samples: u8) -> Vec<Vec3> {
     (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| of_pixel(x, y)).collect()
 }
 
-/// Radiance of every pixel through a lens of this radius that is focused on a distance, in m: the mean of `count` rays from places of
-/// the lens.
+/// Returns the radiance of every pixel through a lens of this radius, focused at a distance in meters: the mean of
+/// `count` rays from positions on the lens.
 pub fn through_lens(scene: &Scene, size_px: [u32; 2], (focus_m, radius_m): (f64, f64), count: u32) -> Vec<Vec3> {
     let [width, height] = size_px;
     let camera = &scene.cameras[0];
@@ -50,7 +50,7 @@ pub fn through_lens(scene: &Scene, size_px: [u32; 2], (focus_m, radius_m): (f64,
         let sharp = camera.eye + toward * (focus_m / toward.dot(forward));
         let sum: DVec3 = (0..count)
             .map(|i| {
-                // A sunflower over the lens.
+                // A sunflower pattern over the lens.
                 let share = ((f64::from(i) + 0.5) / f64::from(count)).sqrt();
                 let place = DVec2::from_angle(f64::from(i) * 2.399_963_2) * (radius_m * share);
                 let eye = camera.eye + right * place.x + up * place.y;
@@ -70,7 +70,7 @@ fn triangles(scene: &Scene) -> Vec<Triangle> {
         let alpha = if material.alpha == AlphaMode::Opaque { 1.0 } else { f64::from(material.base_color.w) };
         let color = material.base_color.truncate().as_dvec3();
         let corner = |i: usize| instance.world_from_model.transform_point3(mesh.positions[i].as_dvec3());
-        // A face has one color.
+        // Each face has one color.
         let paint = |i: usize| mesh.colors.get(i).map_or(DVec3::ONE, |color| color.truncate().as_dvec3());
         let triangle = |corners: [usize; 3]| (corners.map(corner), color * paint(corners[0]), alpha);
         mesh.triangles().map(triangle).collect::<Vec<_>>()
@@ -78,14 +78,14 @@ fn triangles(scene: &Scene) -> Vec<Triangle> {
     scene.instances.iter().flat_map(of).collect()
 }
 
-/// All layers along a ray, over black.
+/// Composites all layers along a ray over black.
 fn seen(triangles: &[Triangle], eye: DVec3, toward: DVec3) -> DVec3 {
     let mut hits: Vec<Hit> = triangles.iter().filter_map(|triangle| hit(triangle, eye, toward)).collect();
     hits.sort_by(|a, b| b.0.total_cmp(&a.0));
     hits.iter().fold(DVec3::ZERO, |behind, (_, color, alpha)| behind.lerp(*color, *alpha))
 }
 
-/// Where a ray meets a triangle from either side (Möller and Trumbore 1997).
+/// Intersects a ray with a triangle from both sides (Möller and Trumbore 1997).
 fn hit(([a, b, c], color, alpha): &Triangle, eye: DVec3, toward: DVec3) -> Option<Hit> {
     let (ab, ac) = (*b - *a, *c - *a);
     let p = toward.cross(ac);

@@ -213,7 +213,7 @@ fn document(parts: &[Part]) -> Value {
     own.put(pane(), color([0.8, 0.3, 0.2, 1.0], json!({})), json!({"translation": [-1, 1, -0.5]}));
     // A pane turns in each scene: without an animation, a time would be refused.
     own.animate(own.nodes.len() - 1, "rotation", Accessor::Rotations);
-    // One-sided as the panes: each case then has one shader less to compile. What is cut out has two sides.
+    // One-sided like the panes, which saves a shader per case. Masked surfaces are two-sided.
     let metal = json!({"pbrMetallicRoughness": {"metallicFactor": 1, "roughnessFactor": 0.1}});
     own.put(pane(), metal, json!({"translation": [0, 0.7, -1], "scale": [0.7, 0.7, 1]}));
     for part in parts {
