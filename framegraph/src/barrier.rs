@@ -46,10 +46,9 @@ enum_names! {
     Uniform "uniform", VertexInput "vertex_input", Indirect "indirect", CopySource "copy_source", CopyTarget "copy_target"
 }
 
-#[cfg(feature = "testing")]
 impl State {
     /// Every state.
-    pub(crate) const ALL: [Self; 13] = {
+    pub const ALL: [Self; 13] = {
         use State::*;
         [
             Undefined,

@@ -4,8 +4,7 @@
 
 mod reason;
 
-pub(crate) use reason::Names;
-pub use reason::{MemoryNeed, Reason, Refusal};
+pub use reason::{MemoryNeed, Names, Reason, Refusal};
 
 use crate::graph::Graph;
 use crate::id::{PassId, ResourceId, StepId};

@@ -32,7 +32,8 @@ macro_rules! bits {
             pub const NONE: Self = Self(0);
             $($(#[$doc])* pub const $bit: Self = Self($value);)+
 
-            pub(crate) const NAMES: &[(Self, &'static str)] = &[$((Self::$bit, $name)),+];
+            /// Every element with its name.
+            pub const NAMES: &[(Self, &'static str)] = &[$((Self::$bit, $name)),+];
 
             /// Returns the union of both sets.
             #[inline]

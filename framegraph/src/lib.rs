@@ -62,7 +62,6 @@
 //! | [`decision`] | the log: what was decided, and why |
 //! | [`diff`](mod@diff), [`dump`] | comparing plans; text, JSON, DOT, Mermaid and SVG output |
 //! | `file` | graphs and devices as RON files (feature `files`) |
-//! | `testing` | an independent plan checker and random graphs (feature `testing`) |
 //! | [`pack`] | the memory packer, a crate of its own |
 //!
 //! # Cargo features
@@ -71,10 +70,20 @@
 //! | --- | --- | --- |
 //! | `files` | yes | the module `file`, and serde for formats, descriptors, caps, options and counts; enables `petgraph` |
 //! | `petgraph` | yes | exports the graph as a `petgraph` graph (the module `dump::graph`) |
-//! | `testing` | no | the plan checker, random graphs and mutations of plans, for tests |
+//! | `internals` | no | write access to plans, for the plan checker `framegraph-check`; not stable |
 //!
 //! Without features, the crate depends only on the memory packer ([`pack`]) and on `triomphe`, an `Arc` without weak
 //! counts.
+
+// Unit tests that look at private arrays need random graphs of this very crate, so they compile the generator into it.
+#[cfg(test)]
+extern crate self as framegraph;
+#[cfg(test)]
+#[path = "../check/src"]
+mod check_source {
+    #[allow(dead_code, unreachable_pub, reason = "the unit tests use a part of the generator")]
+    pub(crate) mod generate;
+}
 
 pub mod access;
 mod backend;
@@ -98,14 +107,14 @@ pub mod handle;
 mod hint;
 pub mod id;
 mod inspect;
+#[cfg(feature = "internals")]
+pub mod internals;
 pub mod options;
 pub mod pass_builder;
 pub mod plan;
 pub mod resolve;
 pub mod resource;
 pub mod sanitize;
-#[cfg(feature = "testing")]
-pub mod testing;
 mod warning;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
@@ -131,6 +140,4 @@ pub use pass_builder::{MAX_COLORS, PassBuilder};
 pub use plan::{Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role, Slot, Step, StepPass, StoreOp};
 pub use resolve::{ResolveMode, ResolveModes};
 pub use resource::{BufferDesc, BufferSize, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};
-#[cfg(feature = "testing")]
-pub use testing::check::{self, check};
 pub use warning::Warning;

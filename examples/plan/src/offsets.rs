@@ -4,7 +4,7 @@ use crate::args::OffsetsArgs;
 use crate::output;
 use crate::run::read;
 use framegraph::pack::{Effort, Options, Progress, Scratch, pack_watched};
-use framegraph::testing::csv;
+use framegraph_check::csv;
 use program::interrupt;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};

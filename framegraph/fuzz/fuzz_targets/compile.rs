@@ -5,8 +5,9 @@
 //! Scratch memory and plan are reused between cases, to detect state that leaks from one compilation into the next.
 #![no_main]
 
-use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
-use framegraph::{Caps, Order, Plan, Scratch, check, compile, compile_after, dump, recompile};
+use framegraph::{Caps, Order, Plan, Scratch, compile, compile_after, dump, recompile};
+use framegraph_check::check;
+use framegraph_check::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use libfuzzer_sys::fuzz_target;
 use std::cell::RefCell;
 

@@ -5,8 +5,9 @@
 #![no_main]
 
 use framegraph::file::{self, GraphFile};
-use framegraph::testing::generate::{self, Entropy, Profile};
-use framegraph::{Caps, Options, Order, Plan, Scratch, check, compile, dump};
+use framegraph::{Caps, Options, Order, Plan, Scratch, compile, dump};
+use framegraph_check::check;
+use framegraph_check::generate::{self, Entropy, Profile};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

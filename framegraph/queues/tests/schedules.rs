@@ -1,10 +1,10 @@
 //! Schedules of random and of selected graphs are correct, not slower than one queue, and close to the optimum. The
 //! checker notices everything that is left out.
 
-use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
     Alias, Caps, Extent, Format, Graph, Intent, Options, PassKind, Plan, Scratch, StepId, TextureDesc, compile,
 };
+use framegraph_check::generate::{self, Entropy, Profile};
 use framegraph_queues::{
     QueueError, QueueId, QueueLayout, Violation, check, check_memory, replan, schedule, schedule_with, share_memory,
     svg, text,

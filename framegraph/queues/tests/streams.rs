@@ -1,10 +1,10 @@
 //! Runs command streams of random plans on a simulated device that knows only the stream and the tables. Checks states
 //! of parts, aliasing barriers, semaphores, and ownership.
 
-use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
     Access, AccessKind, Alias, Caps, Join, Options, PassKind, Placement, Plan, ResourceId, Scratch, State, compile,
 };
+use framegraph_check::generate::{self, Entropy, Profile};
 use framegraph_queues::{
     Command, Memory, PlanStream, QueueId, QueueLayout, Schedule, Transfer, schedule, share_memory,
 };

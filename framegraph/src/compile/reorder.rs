@@ -185,11 +185,11 @@ fn numbered(number: usize, passes: usize, reach: usize) -> Option<(Move, usize, 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::check_source::generate::{self, Entropy, FRAME, Profile};
     use crate::compile::CompileErrors;
     use crate::compile::measure::{Measures, measure};
     use crate::compile::parts::Parts;
     use crate::compile::schedule::dependencies;
-    use crate::testing::generate::{self, Entropy, FRAME, Profile};
 
     #[test]
     fn moves_are_different_orders_that_respect_what_waits_for_what() {

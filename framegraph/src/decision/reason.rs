@@ -8,13 +8,17 @@ use crate::sanitize::escape_controls;
 
 /// Ids and causes that a reason contains.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Names {
-    pub(crate) pass: Option<PassId>,
-    pub(crate) resource: Option<ResourceId>,
-    #[cfg_attr(not(feature = "testing"), expect(dead_code, reason = "the oracle alone reads it"))]
-    pub(crate) step: Option<StepId>,
-    pub(crate) refusal: Option<Refusal>,
-    pub(crate) need: Option<MemoryNeed>,
+pub struct Names {
+    /// The named pass.
+    pub pass: Option<PassId>,
+    /// The named resource.
+    pub resource: Option<ResourceId>,
+    /// The named step.
+    pub step: Option<StepId>,
+    /// The cause of a split or of an epilogue that is not inlined.
+    pub refusal: Option<Refusal>,
+    /// The cause of memory for an attachment.
+    pub need: Option<MemoryNeed>,
 }
 
 /// One row of the list.
@@ -50,7 +54,7 @@ macro_rules! reasons {
             }
 
             /// Returns every reason whose fields are present in `names`.
-            #[cfg(feature = "testing")]
+            #[cfg(feature = "internals")]
             pub(crate) fn all(names: Names) -> Vec<Self> {
                 let makers: [fn(&Names) -> Option<Self>; _] = [$(|_given| Some(Self::$variant $(($(_given.$name?),+))?)),+];
                 makers.iter().filter_map(|make| make(&names)).collect()
@@ -252,8 +256,8 @@ impl Reason {
         }
     }
 
-    /// The passes, resources, steps and causes of the reason.
-    pub(crate) const fn names(self) -> Names {
+    /// Returns the passes, resources, steps and causes of the reason.
+    pub const fn names(self) -> Names {
         self.row().names
     }
 

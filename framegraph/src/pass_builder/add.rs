@@ -194,9 +194,9 @@ impl PassBuilder<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::check_source::generate::{self, Entropy, Profile};
     use crate::graph::{Export, Graph, Tables};
     use crate::resource::Desc;
-    use crate::testing::generate::{self, Entropy, Profile};
 
     /// Copies the resources of `graph` that were created before its first `versions` versions.
     fn make_resources(graph: &Graph, tables: &mut Tables, versions: usize) {

@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 fn explicit() -> Caps {
     Caps::desktop()

@@ -2,8 +2,8 @@
 
 mod orders;
 
-use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::*;
+use framegraph_check::generate::{self, Entropy, FRAME, Profile};
 use std::collections::BTreeSet;
 
 const PLAIN: Profile =

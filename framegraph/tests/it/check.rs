@@ -7,8 +7,9 @@ mod resolves;
 mod same_pixel;
 
 use crate::support::*;
-use framegraph::testing::generate;
 use framegraph::*;
+use framegraph_check::check;
+use framegraph_check::generate;
 
 /// Returns a plan without findings of the oracle.
 #[track_caller]

@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 /// Depth prepass, color pass over it, post pass into the screen.
 fn prepass_frame(samples: u8, prepass_merges: bool) -> Graph {

@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 fn verdict(plan: &Plan, pass: &str) -> Reason {
     let id = plan.graph().find_pass(pass).expect("the pass was declared");

@@ -1,8 +1,9 @@
 //! The decision log: each reason occurs, with a correct sentence.
 
 use crate::support::*;
-use framegraph::testing::generate::{self, Entropy, Profile, options_of};
 use framegraph::*;
+use framegraph_check::check;
+use framegraph_check::generate::{self, Entropy, Profile, options_of};
 use std::collections::BTreeSet;
 
 /// Returns the sentences of a plan about a pass or resource, in the order of the log.

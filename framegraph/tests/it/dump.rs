@@ -5,8 +5,9 @@ mod json;
 mod svg;
 
 use crate::support::*;
-use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::*;
+use framegraph_check::check;
+use framegraph_check::generate::{self, Entropy, Profile};
 
 /// Returns a frame with a depth prepass, a scene over it, an unused pass, and tone mapping into the screen.
 pub fn frame() -> Graph {

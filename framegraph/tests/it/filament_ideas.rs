@@ -3,6 +3,7 @@
 
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 fn sized(width: u32, height: u32) -> TextureDesc {
     TextureDesc::new(Extent::absolute(width, height), Format::Rgba8Unorm)

@@ -15,6 +15,7 @@ mod features;
 mod filament_ideas;
 mod file;
 mod inlining;
+mod inspect;
 mod merging;
 mod ops;
 mod ordering;

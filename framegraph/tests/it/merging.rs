@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 /// Draws into `target`, optionally with a depth attachment of another shape.
 fn overlay(g: &mut Graph, name: &str, target: Texture) -> Texture {

@@ -3,6 +3,7 @@
 
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 /// Use of the second attachment of a pass that blends into it.
 #[derive(Clone, Copy, PartialEq)]

@@ -1,7 +1,8 @@
 //! Textures padded by a driver: the heap uses the sizes of the caps, and histories are placed separately on request.
 
-use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::*;
+use framegraph_check::check;
+use framegraph_check::generate::{self, Entropy, FRAME, Profile};
 
 /// Returns caps rows in which every texture of the graph needs a third more than its texels, plus 100 bytes.
 fn padded(graph: &Graph) -> Vec<(TextureDesc, u64)> {

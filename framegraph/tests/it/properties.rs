@@ -3,8 +3,9 @@
 //! `FRAMEGRAPH_PROPERTY_CASES=100000 cargo test --release -p framegraph --test it properties` runs this number of
 //! graphs per property. The default takes about a second per property in a debug build.
 
-use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use framegraph::*;
+use framegraph_check::check;
+use framegraph_check::generate::{self, Entropy, OPTIONS, Profile, options_of};
 use std::collections::BTreeSet;
 
 /// Returns the seeds of one property: the requested number, or a fraction of the default.

@@ -1,7 +1,7 @@
 //! Compares counts and traffic of random plans with sums over the operations of their attachments.
 
-use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::*;
+use framegraph_check::generate::{self, Entropy, Profile};
 
 /// Returns the operations and bytes per texel of each plane of an attachment. Depth has the bytes that stencil does
 /// not.

@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 fn frame(first: Option<Format>, second: Option<Format>) -> Graph {
     let mut g = Graph::new();

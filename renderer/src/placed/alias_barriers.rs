@@ -42,8 +42,8 @@ pub(crate) fn alias_barriers(plan: &Plan, is_placed: impl Fn(ResourceId) -> bool
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
     use framegraph::{Alias, Caps, Options, Plan, Scratch, compile};
+    use framegraph_check::generate::{self, Entropy, FRAME, Profile};
 
     /// Returns the heap and the byte range of a resource.
     fn bytes(plan: &Plan, resource: ResourceId) -> Option<(bool, u64, u64)> {

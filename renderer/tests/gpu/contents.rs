@@ -19,8 +19,8 @@ mod spec;
 
 use crate::bench::{TestResult, on_adapter, skip};
 use case::{Case, Runner, Verdict};
-use framegraph::testing::generate::{self, Entropy, FRAME, Profile};
 use framegraph::{Graph, Options};
+use framegraph_check::generate::{self, Entropy, FRAME, Profile};
 use std::collections::BTreeMap;
 
 /// Number of graphs to execute; ordinary runs execute a share of them.

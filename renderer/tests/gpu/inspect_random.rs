@@ -1,8 +1,8 @@
 //! Inspection of random graphs: every listed target can be inspected.
 
 use crate::bench::TestResult;
-use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{Options, Plan, Scratch, compile, dump};
+use framegraph_check::generate::{self, Entropy, Profile};
 use framegraph_wgpu::inspect::{InspectError, Inspector, all_targets};
 use framegraph_wgpu::{ExecuteError, Executor, Gpu};
 use framegraph_wgpu::{Frame, mock};

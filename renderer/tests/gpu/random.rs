@@ -2,10 +2,10 @@
 //! wgpu detects every conflict in a plan.
 
 use crate::bench::TestResult;
-use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::{
     Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Plan, Scratch, StoreOp,
 };
+use framegraph_check::generate::{self, Entropy, Profile};
 use framegraph_wgpu::{
     Binding, BoundResource, Compute, Cx, ExecuteError, Executor, Gpu, Output, Raster, RecordError, Shader,
     texture_format,

@@ -8,7 +8,8 @@ mod expect;
 
 use expect::{Case, Field};
 use framegraph::file::GraphFile;
-use framegraph::{Caps, Options, Order, Plan, Scratch, check, compile};
+use framegraph::{Caps, Options, Order, Plan, Scratch, compile};
+use framegraph_check::check;
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {

@@ -172,7 +172,7 @@ fn intervals_are_packed_and_mistakes_are_reported() {
 #[cfg(unix)]
 #[test]
 fn offsets_are_printed_when_time_is_up() {
-    use framegraph::testing::planted::{Cuts, Planted};
+    use framegraph_check::planted::{Cuts, Planted};
     use std::process::Stdio;
     let csv = scratch("planted.csv");
     let items = Planted { items: 3000, ..Planted::square(Cuts::Even) }.items(1);

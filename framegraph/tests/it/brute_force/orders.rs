@@ -2,8 +2,9 @@
 //! optimal one.
 
 use super::{compiled, declared, planes};
-use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::*;
+use framegraph_check::check;
+use framegraph_check::generate::{self, Entropy, Profile};
 
 fn flag(p: &mut PassBuilder<'_>, flags: PassFlags) {
     if flags.has(PassFlags::SIDE_EFFECT) {

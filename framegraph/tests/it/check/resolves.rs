@@ -4,6 +4,7 @@
 use super::{clean, usage};
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 /// Returns a graph that draws color and depth with four samples, resolves depth with `mode`, and reads it.
 fn resolved_depth(mode: ResolveMode) -> Graph {

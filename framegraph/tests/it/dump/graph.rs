@@ -4,8 +4,8 @@ use super::frame;
 use crate::support::*;
 use framegraph::dump::graph::{Node, bipartite, flows};
 use framegraph::dump::{data_flow, reduced};
-use framegraph::testing::generate::{self, Entropy, Profile};
 use framegraph::*;
+use framegraph_check::generate::{self, Entropy, Profile};
 use petgraph::algo::{has_path_connecting, is_cyclic_directed};
 use petgraph::visit::EdgeRef;
 

@@ -4,12 +4,12 @@ use super::case::{Case, Runner};
 use super::copy::{Copy, copies};
 use super::{options, spec};
 use crate::bench::{TestResult, on_adapter, skip};
-use framegraph::testing::generate::{self, Entropy, Profile};
-use framegraph::testing::mutation::mutants;
 use framegraph::{
     AccessKind, Alias, Attachment, Desc, Extent, Format, Join, LoadOp, Mode, Options, PassKind, Placement, Plan,
     ResourceId, Role, StepId, StoreOp,
 };
+use framegraph_check::generate::{self, Entropy, Profile};
+use framegraph_check::mutation::mutants;
 use std::collections::BTreeMap;
 
 /// A kind of broken decision.

@@ -3,7 +3,8 @@
 use crate::document::Document;
 use crate::frames::{self, FRAME, Shape};
 use crate::table::{Table, excess, percent};
-use framegraph::{Alias, Caps, Effort, Options, Placement, Plan, Scratch, check, compile};
+use framegraph::{Alias, Caps, Effort, Options, Placement, Plan, Scratch, compile};
+use framegraph_check::check;
 use std::time::Instant;
 
 /// Graphs of each shape in the quick run.

@@ -1,7 +1,7 @@
 //! Random graphs with a given number of resources, for measuring memory. Many resources live at the same time.
 
-use framegraph::testing::generate::Entropy;
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Graph, Intent, PassBuilder, Texture, TextureDesc};
+use framegraph_check::generate::Entropy;
 
 /// Frame size, in texels.
 pub const FRAME: [u32; 2] = [1920, 1080];
@@ -132,7 +132,8 @@ fn write(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use framegraph::{Caps, Options, Plan, Scratch, check, compile};
+    use framegraph::{Caps, Options, Plan, Scratch, compile};
+    use framegraph_check::check;
 
     #[test]
     fn graphs_have_as_many_resources_as_wanted_and_all_of_them_are_needed() {

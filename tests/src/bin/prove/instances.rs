@@ -3,7 +3,7 @@
 use crate::document::Document;
 use crate::table::Table;
 use framegraph::pack::{Effort, Options, Scratch, pack_watched};
-use framegraph::testing::csv;
+use framegraph_check::csv;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -2,9 +2,9 @@
 
 use crate::document::Document;
 use crate::table::{Table, percent};
-use framegraph::testing::generate::{self, Entropy, Profile, options_of};
-use framegraph::testing::mutation::MutationReport;
 use framegraph::{Caps, Plan, Scratch, compile};
+use framegraph_check::generate::{self, Entropy, Profile, options_of};
+use framegraph_check::mutation::MutationReport;
 
 /// Plans in the quick run.
 pub const QUICK: usize = 9;

@@ -2,8 +2,9 @@
 
 use crate::document::Document;
 use crate::table::Table;
-use framegraph::testing::generate::{self, Entropy, OPTIONS, Profile, options_of};
-use framegraph::{Caps, Options, Order, Plan, Scratch, check, compile};
+use framegraph::{Caps, Options, Order, Plan, Scratch, compile};
+use framegraph_check::check;
+use framegraph_check::generate::{self, Entropy, OPTIONS, Profile, options_of};
 
 /// Graphs in the quick run.
 pub const QUICK: usize = 100;

@@ -4,7 +4,7 @@ use crate::document::Document;
 use crate::instances::overlaps;
 use crate::table::{Table, excess};
 use framegraph::pack::{Effort, Options, Scratch, pack_watched};
-use framegraph::testing::planted::{Cuts, Planted};
+use framegraph_check::planted::{Cuts, Planted};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
