@@ -17,7 +17,7 @@
 //!   [reflects](reflect) it.
 //! - [`Features`] are compile-time switches of a shader, tested in WGSL by `@if(NAME)`.
 //! - [`layout`] mirrors every uniform and storage struct; a test compares sizes and offsets.
-//! - [`reference`](mod@reference) mirrors every function of `wgsl/lib/` in f64, under the same file and function names.
+//! - [`reference`](mod@reference) has the functions of `wgsl/lib/` in f64 that programs need on the CPU, such as tone curves.
 //!
 //! # Example
 //!

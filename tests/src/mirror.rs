@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use framegraph_shaders::reference::cases::{Case, Deviation};
+use framegraph_shader_mirrors::cases::{Case, Deviation};
 use framegraph_wgpu::{Gpu, read_buffer};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroupDescriptor, BindGroupEntry, BufferDescriptor, BufferUsages, ComputePipelineDescriptor};

@@ -37,12 +37,12 @@ pub struct FrameUniforms {
     pub specular_scale: f32,
     /// Last mip level of the specular cube, which is filtered for roughness 1.
     pub roughness_one_lod: f32,
-    /// Pre-exposed irradiance / π in 18 coefficients; w is unused. See
-    /// [`irradiance_sh5`](crate::reference::sh::irradiance_sh5).
+    /// Pre-exposed irradiance / π in 18 coefficients; w is unused. See `irradiance_sh5` in
+    /// `lib/sh.wgsl`.
     pub sh: [Vec4; 18],
     /// Scale and offset that map the binary logarithm of a blended surface's distance, in m, to −1…1. Then bias and
     /// overestimation of moments
-    /// ([`moment_transmittance`](crate::reference::moment_transparency::moment_transmittance)).
+    /// (`moment_transmittance` in `lib/moment_transparency.wgsl`).
     pub blended: Vec4,
 }
 

@@ -173,7 +173,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::punctual::spot_attenuation;
+    use framegraph_shader_mirrors::punctual::spot_attenuation;
 
     fn spot(inner: f32, outer: f32) -> Result<LightUniforms, LightError> {
         let shape = Punctual::Spot {

@@ -4,8 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, IVec2, Vec2, Vec4};
 
-/// Coefficients of a projection, from which view-space positions are reconstructed; see
-/// [`unproject`](crate::reference::unproject).
+/// Coefficients of a projection, from which view-space positions are reconstructed; see `lib/unproject.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Projection {

@@ -13,17 +13,17 @@ pub fn pow5(x: f64) -> f64 {
 }
 
 /// Clamps x to [0, 1], like WGSL's `saturate`.
-pub(crate) fn saturate(x: f64) -> f64 {
+pub fn saturate(x: f64) -> f64 {
     x.clamp(0.0, 1.0)
 }
 
 /// Interpolates from a at t = 0 to b at t = 1, like WGSL's `mix`.
-pub(crate) fn mix(a: f64, b: f64, t: f64) -> f64 {
+pub fn mix(a: f64, b: f64, t: f64) -> f64 {
     a + (b - a) * t
 }
 
 /// Evaluates a cubic step from 0 at `low` to 1 at `high`, like WGSL's `smoothstep`.
-pub(crate) fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
     let t = saturate((x - low) / (high - low));
     t * t * (3.0 - 2.0 * t)
 }

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use framegraph_shader_mirrors::cases;
 use framegraph_shaders::library::SOURCES;
-use framegraph_shaders::reference::cases;
 
 use crate::sources::declarations;
 

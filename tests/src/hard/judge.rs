@@ -2,7 +2,7 @@
 
 use super::probe::{self, Probe, WIDER, Wider};
 use crate::mirror;
-use framegraph_shaders::reference::cases::Case;
+use framegraph_shader_mirrors::cases::Case;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::ops::Range;

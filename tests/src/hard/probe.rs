@@ -1,7 +1,7 @@
 //! Inputs of a function beyond its domain, and the invariant of its results.
 
 use super::probes;
-use framegraph_shaders::reference::cases::{self, Bound, Case, Domain};
+use framegraph_shader_mirrors::cases::{self, Bound, Case, Domain};
 
 /// Builds that a probe applies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,8 +10,8 @@ mod shadow;
 mod transparency;
 
 use super::probe::{Build, Probe};
-use framegraph_shaders::reference::cases::Domain;
-use framegraph_shaders::reference::cases::Domain::Values;
+use framegraph_shader_mirrors::cases::Domain;
+use framegraph_shader_mirrors::cases::Domain::Values;
 
 pub(super) const ALL: [&[Probe]; 8] = [
     shading::PROBES,

@@ -27,18 +27,18 @@ const OCCLUSION: &str = "tests/tests/it/occlusion/hard.rs";
 const PICTURES: &str = "tests/tests/it/shadow_rays/hard.rs";
 const RAYS: &str = "tests/tests/it/shadow_rays.rs";
 const FIT: &str = "passes/src/gpu_scene/shadow_views/tests.rs";
-const SHADOW: &str = "shaders/src/reference/shadow.rs";
-const MOMENTS: &str = "shaders/src/reference/shadow_moments.rs";
+const SHADOW: &str = "shaders/mirrors/src/shadow.rs";
+const MOMENTS: &str = "shaders/mirrors/src/shadow_moments.rs";
 const BLOOM: &str = "tests/tests/it/bloom.rs";
 const CAMERA: &str = "scene/src/camera/tests.rs";
 const POISON: &str = "tests/tests/it/poison.rs";
 const SCENES: &str = "tests/tests/it/degenerate.rs";
-const GLOW: &str = "shaders/src/reference/bloom.rs";
+const GLOW: &str = "shaders/mirrors/src/bloom.rs";
 const LEVELS: &str = "passes/src/effects/bloom/chain.rs";
-const FOG: &str = "shaders/src/reference/fog.rs";
+const FOG: &str = "shaders/mirrors/src/fog.rs";
 const LENS: &str = "passes/src/effects/dof/settings.rs";
 const DOF: &str = "tests/tests/it/dof.rs";
-const BLENDED: &str = "shaders/src/reference/moment_transparency.rs";
+const BLENDED: &str = "shaders/mirrors/src/moment_transparency.rs";
 const HALF: &str = "tests/tests/it/half.rs";
 const HALF_HARD: &str = "tests/tests/it/half/hard.rs";
 
@@ -103,7 +103,7 @@ pub const ROWS: [Row; 58] = [
         "the border of the picture",
         &[
             Test(OCCLUSION, "hard_36_borders_do_not_wrap"),
-            Test("shaders/src/reference/contact_shadow.rs", "hard_case_36_nothing_hides_at_the_edge"),
+            Test("shaders/mirrors/src/contact_shadow.rs", "hard_case_36_nothing_hides_at_the_edge"),
         ],
     ),
     row(

@@ -5,7 +5,7 @@ use super::record::{ChoiceRecord, TechniqueRecord};
 use super::studio::{Ready, Studio, compared, times};
 use super::technique::{Choice, Measured, Outcome, Subject, Technique};
 use crate::reference::picture::Picture;
-use framegraph_shaders::reference::cases;
+use framegraph_shader_mirrors::cases;
 use framegraph_shaders::reflect::Operations;
 use program::outputs::Outputs;
 use std::path::Path;

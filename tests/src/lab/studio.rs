@@ -16,7 +16,7 @@ use framegraph_passes::{
 };
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Light, Scene, progress};
-use framegraph_shaders::reference::srgb::{linear_from_srgb_channel, srgb_from_linear_channel};
+use framegraph_shader_mirrors::srgb::{linear_from_srgb_channel, srgb_from_linear_channel};
 use framegraph_wgpu::{Executor, ExecutorOptions, Frame, Gpu, Imports, read_texture};
 use glam::{DVec2, Vec3};
 use std::cell::RefCell;

@@ -1,9 +1,9 @@
 //! Error of the GGX distribution in half floats, against its value at the exact angle.
 
 use crate::mirror;
-use framegraph_shaders::reference::cases::{self, Case};
-use framegraph_shaders::reference::ggx::d_ggx;
-use framegraph_shaders::reference::quantize::quantize_mantissa;
+use framegraph_shader_mirrors::cases::{self, Case};
+use framegraph_shader_mirrors::ggx::d_ggx;
+use framegraph_shader_mirrors::quantize::quantize_mantissa;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
 use truth::sphere::{directions, frame};

@@ -3,7 +3,7 @@
 //! It repeats the terms of `lib/ggx.wgsl` in the shader's order of operations. It models the shader and is not a
 //! reference.
 
-use framegraph_shaders::reference::quantize::quantize_mantissa;
+use framegraph_shader_mirrors::quantize::quantize_mantissa;
 use glam::DVec3;
 
 /// Smallest normal half float.

@@ -15,7 +15,7 @@ use framegraph_passes::{
 };
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
-use framegraph_shaders::reference::cases::{self, Case, Deviation};
+use framegraph_shader_mirrors::cases::{self, Case, Deviation};
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Gpu, Imports, read_texture};
 use std::error::Error;

@@ -8,7 +8,7 @@ use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;
 use framegraph_passes::{CameraView, LightSearch, TaaSettings, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
-use framegraph_shaders::reference::srgb::srgb_from_linear_channel;
+use framegraph_shader_mirrors::srgb::srgb_from_linear_channel;
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, Raster, Shader, read_texture};
 use glam::{DVec2, DVec3};
 use std::error::Error;

@@ -28,8 +28,8 @@ use framegraph_passes::{
 };
 use framegraph_scene::camera::EV100_RANGE;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
+use framegraph_shader_mirrors::dfg::Visibility;
 use framegraph_shaders::layout::FxaaUniforms;
-use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::{Gpu, Imports, Pixels, read_texture};
 use glam::{DVec3, DVec4, Vec3};

@@ -15,7 +15,7 @@ use framegraph_passes::effects::post::{Post, PostEffect};
 use framegraph_passes::gpu_scene::view::{ViewSettings, Views};
 use framegraph_passes::{CameraView, Handles, LightSearch, PostSettings, Settings, Slot, StageError};
 use framegraph_scene::{Camera, Projection};
-use framegraph_shaders::reference::flare::starburst;
+use framegraph_shader_mirrors::flare::starburst;
 use framegraph_wgpu::{Frame, Gpu};
 use glam::{DVec2, DVec3};
 use stage::{Image, made};

@@ -4,7 +4,7 @@ use crate::light_document::numbers;
 use crate::stage::gpu;
 use framegraph_passes::{Quality, Shading};
 use framegraph_scene::{Environment, Light, Material};
-use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_shader_mirrors::dfg::Visibility;
 use glam::{DVec3, Vec3};
 use std::error::Error;
 use tests::measure::board::Seen;

@@ -3,7 +3,7 @@
 
 use crate::stage;
 use framegraph_passes::Precision;
-use framegraph_shaders::reference::cases::{self, Case, Domain};
+use framegraph_shader_mirrors::cases::{self, Case, Domain};
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 use std::error::Error;

@@ -9,9 +9,9 @@ use framegraph_passes::{CameraView, LightSearch, PostSettings, Settings, Shading
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::light::LightKind;
 use framegraph_scene::{Camera, Environment, Light, Projection, Scene, SunHalo, progress};
+use framegraph_shader_mirrors::sky;
+use framegraph_shader_mirrors::sky::Preetham;
 use framegraph_shaders::layout::{EdgeFade, Grading, SkyUniforms, ToneMap};
-use framegraph_shaders::reference::sky;
-use framegraph_shaders::reference::sky::Preetham;
 use framegraph_wgpu::{Gpu, Imports, read_texture};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use std::error::Error;

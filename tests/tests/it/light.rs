@@ -6,7 +6,7 @@ use framegraph_passes::light::ibl::cache::Cache;
 use framegraph_passes::light::ibl::{DfgSettings, DfgTable, IblSettings, ImageLight};
 use framegraph_scene::environment::{Sh, ShBands, ShWindow, SunExtraction};
 use framegraph_scene::{Environment, progress};
-use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_shader_mirrors::dfg::Visibility;
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 use std::error::Error;

@@ -2,7 +2,7 @@
 
 use crate::light_document::rows;
 use crate::stage;
-use framegraph_shaders::reference::cases;
+use framegraph_shader_mirrors::cases;
 use std::error::Error;
 use tests::mirror;
 

@@ -11,7 +11,7 @@ use framegraph_scene::environment::{EquirectMap, ShBands};
 use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular};
 use framegraph_scene::texture::{Sampler, TextureRole};
 use framegraph_scene::{Camera, Environment, Material, Projection, Scene, progress};
-use framegraph_shaders::reference::occlusion::specular_occlusion;
+use framegraph_shader_mirrors::occlusion::specular_occlusion;
 use framegraph_wgpu::{Gpu, Imports, read_texture};
 use glam::{DMat4, DVec3, Vec3};
 use std::error::Error;

@@ -5,8 +5,8 @@ use framegraph_passes::light::ibl::{DfgSettings, DfgTable, IblSettings, ImageLig
 use framegraph_passes::{Quality, Shading};
 use framegraph_scene::environment::{Sh, ShBands, ShWindow, Sky};
 use framegraph_scene::{Environment, progress};
-use framegraph_shaders::reference::cases;
-use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_shader_mirrors::cases;
+use framegraph_shader_mirrors::dfg::Visibility;
 use framegraph_wgpu::Gpu;
 use std::error::Error;
 use std::time::Instant;

@@ -3,7 +3,7 @@
 //! `cargo run -p tests --bin shading_errors` prints the tables of `docs/measurements/half-floats.md`. Each has a negative control,
 //! an error made on purpose that its comparison must detect. The exit code is 1 if it does not.
 
-use framegraph_shaders::reference::cases;
+use framegraph_shader_mirrors::cases;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
 use std::process::ExitCode;

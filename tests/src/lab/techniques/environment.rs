@@ -7,8 +7,8 @@ use crate::measure::harmonics::{self, Scene as Around};
 use framegraph_passes::light::ibl::EnvironmentFormat;
 use framegraph_passes::light::shading::Irradiance;
 use framegraph_scene::environment::{ShBands, ShWindow};
-use framegraph_shaders::reference::quantize::{quantize_rg11b10ufloat, quantize_rgba16float};
-use framegraph_shaders::reference::rgbm::{linear_from_rgbm, rgbm_bytes};
+use framegraph_shader_mirrors::quantize::{quantize_rg11b10ufloat, quantize_rgba16float};
+use framegraph_shader_mirrors::rgbm::{linear_from_rgbm, rgbm_bytes};
 use framegraph_wgpu::Gpu;
 use glam::{DVec3, DVec4};
 

@@ -3,11 +3,11 @@
 use super::{Choice, Technique, formula, number};
 use crate::lab::technique::Measured;
 use framegraph_passes::light::shading::TransmissionBlur;
-use framegraph_shaders::reference::clear_coat::{f0_under_clear_coat, f0_under_clear_coat_fast, v_kelemen};
-use framegraph_shaders::reference::depth_normal::continues_ahead;
-use framegraph_shaders::reference::fresnel::f_schlick_scalar;
-use framegraph_shaders::reference::ggx::{v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
-use framegraph_shaders::reference::refraction::{seen_transmission_spread, transmission_spread};
+use framegraph_shader_mirrors::clear_coat::{f0_under_clear_coat, f0_under_clear_coat_fast, v_kelemen};
+use framegraph_shader_mirrors::depth_normal::continues_ahead;
+use framegraph_shader_mirrors::fresnel::f_schlick_scalar;
+use framegraph_shader_mirrors::ggx::{v_smith_ggx_correlated, v_smith_ggx_correlated_fast};
+use framegraph_shader_mirrors::refraction::{seen_transmission_spread, transmission_spread};
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 
@@ -55,10 +55,10 @@ fn visibility_term() -> Technique {
     let choices = vec![
         rms("height-correlated Smith", against(v_smith_ggx_correlated))
             .counted("v_smith_ggx_correlated", false)
-            .found_in(|f| f.settings.shading.visibility == framegraph_shaders::reference::dfg::Visibility::Exact),
+            .found_in(|f| f.settings.shading.visibility == framegraph_shader_mirrors::dfg::Visibility::Exact),
         rms("Hammon", against(v_smith_ggx_correlated_fast))
             .counted("v_smith_ggx_correlated_fast", false)
-            .found_in(|f| f.settings.shading.visibility == framegraph_shaders::reference::dfg::Visibility::Fast),
+            .found_in(|f| f.settings.shading.visibility == framegraph_shader_mirrors::dfg::Visibility::Fast),
         rms("separable Smith", against(separable)),
         rms("Schlick, k = α/2", against(schlick)),
     ];

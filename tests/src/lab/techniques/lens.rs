@@ -10,7 +10,7 @@ use framegraph_passes::effects::taa::JitterPattern;
 use framegraph_passes::effects::upscale::UpscaleFilter;
 use framegraph_passes::gpu_scene::punctual::FroxelSettings;
 use framegraph_passes::{BloomSettings, FogSettings, LightSearch, TaaSettings, Upscale};
-use framegraph_shaders::reference::fog::{fog_opacity, fog_optical_depth};
+use framegraph_shader_mirrors::fog::{fog_opacity, fog_optical_depth};
 use framegraph_wgpu::Gpu;
 
 pub(super) fn techniques() -> Vec<Technique> {

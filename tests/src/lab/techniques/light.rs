@@ -11,7 +11,7 @@ use framegraph_passes::light::ibl::{DfgSettings, DfgTable};
 use framegraph_passes::light::shading::SpecularAa;
 use framegraph_scene::environment::{ShBands, ShWindow};
 use framegraph_scene::progress;
-use framegraph_shaders::reference::dfg::Visibility;
+use framegraph_shader_mirrors::dfg::Visibility;
 use framegraph_wgpu::Gpu;
 use truth::albedo::Masking;
 

@@ -6,11 +6,11 @@ use crate::lab::technique::Measured;
 use crate::measure::grading;
 use framegraph::Format;
 use framegraph_passes::grading::{Extras, GradeBy, Look, TableDesc, TableFormat};
+use framegraph_shader_mirrors::dither::dither_offset;
+use framegraph_shader_mirrors::grading::{linear_from_log_c, log_c_from_linear};
+use framegraph_shader_mirrors::quantize::{quantize_rg11b10ufloat, quantize_rgba16float};
+use framegraph_shader_mirrors::srgb::srgb_from_linear_channel;
 use framegraph_shaders::layout::ToneMap;
-use framegraph_shaders::reference::dither::dither_offset;
-use framegraph_shaders::reference::grading::{linear_from_log_c, log_c_from_linear};
-use framegraph_shaders::reference::quantize::{quantize_rg11b10ufloat, quantize_rgba16float};
-use framegraph_shaders::reference::srgb::srgb_from_linear_channel;
 use framegraph_wgpu::Gpu;
 use glam::{DVec2, DVec3};
 

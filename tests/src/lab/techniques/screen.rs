@@ -121,7 +121,7 @@ fn resolution() -> Technique {
 }
 
 fn bounces() -> Technique {
-    use framegraph_shaders::reference::occlusion::gtao_multi_bounce;
+    use framegraph_shader_mirrors::occlusion::gtao_multi_bounce;
     let choice = |name: &str, shown: fn(f64, f64) -> f64| {
         number(name, move |_: &Gpu| {
             let grid = (1..=20).flat_map(|v| (0..=18).map(move |p| (f64::from(v) / 20.0, f64::from(p) / 20.0)));

@@ -3,16 +3,16 @@
 use super::Stage;
 use framegraph_passes::effects::depth::structure::{Resolution, structure_levels};
 use framegraph_passes::effects::occlusion::{ConeTrace, Gtao, Method, Occluders, OcclusionSettings};
-use framegraph_shaders::reference::cone_trace::cone_slice;
-use framegraph_shaders::reference::depth_normal::continues_ahead;
-use framegraph_shaders::reference::depth_pyramid::{finer_texel, finest_texel, pyramid_level};
-use framegraph_shaders::reference::dither::interleaved_gradient_noise;
-use framegraph_shaders::reference::gtao::{
+use framegraph_shader_mirrors::cone_trace::cone_slice;
+use framegraph_shader_mirrors::depth_normal::continues_ahead;
+use framegraph_shader_mirrors::depth_pyramid::{finer_texel, finest_texel, pyramid_level};
+use framegraph_shader_mirrors::dither::interleaved_gradient_noise;
+use framegraph_shader_mirrors::gtao::{
     acos_held, sector_bits, slice_arc, slice_bent, slice_offset, slice_share, slice_turn, slice_whole,
 };
-use framegraph_shaders::reference::numerics::normalize_or;
-use framegraph_shaders::reference::sao::{sao_obscurance, sao_tap_distance, sao_term};
-use framegraph_shaders::reference::unproject::{Projection, ndc_from_view, view_position, view_z};
+use framegraph_shader_mirrors::numerics::normalize_or;
+use framegraph_shader_mirrors::sao::{sao_obscurance, sao_tap_distance, sao_term};
+use framegraph_shader_mirrors::unproject::{Projection, ndc_from_view, view_position, view_z};
 use glam::{DVec2, DVec3, DVec4};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

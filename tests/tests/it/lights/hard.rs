@@ -4,7 +4,7 @@ use super::{PLAIN, TestResult, punctual_lights};
 use crate::stage::{gpu, precisions};
 use framegraph_passes::Precision;
 use framegraph_passes::gpu_scene::punctual::{FroxelSettings, LightSearch};
-use framegraph_shaders::reference::cases::{Case, Domain, all};
+use framegraph_shader_mirrors::cases::{Case, Domain, all};
 use tests::measure::lights::Night;
 use tests::mirror;
 

@@ -5,7 +5,7 @@ use crate::stage::{self, precisions};
 use framegraph::{Caps, Options};
 use framegraph_passes::Settings;
 use framegraph_scene::Projection;
-use framegraph_shaders::reference::cases::{Case, Domain, all};
+use framegraph_shader_mirrors::cases::{Case, Domain, all};
 use framegraph_wgpu::Gpu;
 use glam::DVec3;
 use std::error::Error;

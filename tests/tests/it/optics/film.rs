@@ -6,7 +6,7 @@ use framegraph_passes::{Precision, Shading};
 use framegraph_scene::material::{ClearCoat, Iridescence, Specular, Transmission, Volume};
 use framegraph_scene::texture::{Filter, Sampler, TextureRole};
 use framegraph_scene::{Environment, Light, Material};
-use framegraph_shaders::reference::thin_film::{film_sensitivity, thin_film_reflectance};
+use framegraph_shader_mirrors::thin_film::{film_sensitivity, thin_film_reflectance};
 use glam::{DMat4, DVec3, Vec3};
 use std::f64::consts::PI;
 use tests::measure::board::{Board, card};

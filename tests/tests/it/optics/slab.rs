@@ -1,6 +1,6 @@
 //! Blur of the background behind rough bodies, compared with Walter's microfacet BTDF.
 
-use framegraph_shaders::reference::refraction::{seen_transmission_spread, transmission_spread};
+use framegraph_shader_mirrors::refraction::{seen_transmission_spread, transmission_spread};
 use std::f64::consts::TAU;
 use truth::slab::Slab;
 

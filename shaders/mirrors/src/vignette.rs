@@ -17,7 +17,7 @@ pub fn edge_share(from_middle: DVec2, [scale, aspect, radius, falloff]: [f64; 4]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layout::VignetteUniforms;
+    use framegraph_shaders::layout::VignetteUniforms;
 
     #[test]
     fn corners_are_as_dark_as_asked_and_the_middle_is_bright() {

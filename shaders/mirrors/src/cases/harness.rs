@@ -3,7 +3,7 @@
 use super::super::quantize::{FLOAT16_MAX, quantize_mantissa};
 use super::case::{Bound, Case, Deviation, Disagreement};
 use super::domain::splitmix;
-use crate::{Feature, Features, Module, Shader, ShaderError, resolve};
+use framegraph_shaders::{Feature, Features, Module, Shader, ShaderError, resolve};
 
 /// Functions that a [`Case::call`] may use to read several of its inputs at once.
 const READERS: &str = "\
