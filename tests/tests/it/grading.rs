@@ -44,7 +44,7 @@ fn tables_are_as_near_as_the_document_says() -> TestResult {
                 assert_eq!(
                     row,
                     error(name, &look, desc)?.row(),
-                    "renew it: cargo run --release -p tests --bin grading"
+                    "renew it: cargo run --release -p tests --bin measure -- grading"
                 );
             }
         }

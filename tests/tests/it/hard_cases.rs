@@ -13,7 +13,7 @@ use tests::measure::half_model::HalfModel;
 type TestResult = Result<(), Box<dyn Error>>;
 
 const DOCUMENT: &str = include_str!("../../../docs/measurements/hard-cases.md");
-const RENEW: &str = "renew docs/measurements/hard-cases.md: cargo run -p tests --bin hard_cases";
+const RENEW: &str = "renew docs/measurements/hard-cases.md: cargo run -p tests --bin measure -- hard-cases";
 
 /// Returns true if a file has a test with a name.
 fn is_tested(file: &str, test: &str) -> Result<bool, Box<dyn Error>> {

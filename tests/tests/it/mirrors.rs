@@ -17,7 +17,7 @@ fn every_library_function_equals_its_mirror_on_the_device() -> Result<(), Box<dy
     let mut documented = rows("Shader library against").into_iter().skip(1);
     for case in cases::all() {
         let name = format!("{}::{}", case.file, case.function);
-        let renew = "renew docs/measurements/image-light.md: cargo run -p tests --bin ibl_errors -- mirrors";
+        let renew = "renew docs/measurements/image-light.md: cargo run -p tests --bin measure -- ibl-errors mirrors";
         let printed = documented.next().unwrap_or_else(|| panic!("{name} is missing; {renew}"));
         assert_eq!(printed[0], name, "{renew}");
         match mirror::compare(&gpu, case, POINTS) {

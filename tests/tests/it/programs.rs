@@ -11,7 +11,7 @@ fn a_full_standard_output_is_an_exit_code() {
     let folder = Path::new(env!("CARGO_BIN_EXE_prove")).parent().expect("a program lies in a folder");
     let full = || std::fs::File::options().write(true).open("/dev/full").expect("Linux has it");
     let programs = programs();
-    for expected in ["grading", "plan", "prove", "render", "viewer", "xtask"] {
+    for expected in ["measure", "plan", "prove", "render", "viewer", "xtask"] {
         assert!(programs.iter().any(|name| name == expected), "{expected} is not among {programs:?}");
     }
     for name in programs {

@@ -64,7 +64,11 @@ fn the_document_has_what_is_printed() -> TestResult {
     let documented: Vec<Vec<String>> = documented.filter(|line| !line.contains("---")).map(cells).collect();
     let found: Vec<Vec<String>> =
         table(&gpu)?.iter().filter(|row| !row.contains("---")).map(|row| cells(row)).collect();
-    assert_eq!(documented.len(), found.len(), "renew docs/design/taa.md: cargo run --release -p tests --bin taa");
+    assert_eq!(
+        documented.len(),
+        found.len(),
+        "renew docs/design/taa.md: cargo run --release -p tests --bin measure -- taa"
+    );
     for (old, new) in documented.iter().zip(&found) {
         let near = |(old, new): (&String, &String)| match (old.parse::<f64>(), new.parse::<f64>()) {
             (Ok(old), Ok(new)) => (old - new).abs() <= if old > 5.0 { 0.5 } else { 0.01 },

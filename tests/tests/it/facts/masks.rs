@@ -20,7 +20,7 @@ fn some_masks_have_every_pair_in_every_state() {
     }
 }
 
-/// `cargo run --release -p tests --bin facts -- --every-mask` tests all 4096 combinations.
+/// `cargo run --release -p tests --bin measure -- facts --every-mask` tests all 4096 combinations.
 #[test]
 fn what_is_dropped_changes_no_more_than_its_class_says() -> TestResult {
     let Some(gpu) = gpu("what_is_dropped_changes_no_more_than_its_class_says") else { return Ok(()) };

@@ -1,28 +1,17 @@
-//! `hard_cases`: tests of hard inputs, and the test case that needs each guard of the shader library.
+//! `measure hard-cases`: tests of hard inputs, and the test case that needs each guard of the shader library.
 //!
-//! `cargo run -p tests --bin hard_cases` prints the tables of `docs/measurements/hard-cases.md`. The exit code is 1 if an invariant
+//! `cargo run -p tests --bin measure -- hard-cases` prints the tables of `docs/measurements/hard-cases.md`. The exit code is 1 if an invariant
 //! fails, or if a guard is neither covered by a test case nor explained.
 
-use framegraph_wgpu::{AdapterRequest, Gpu};
-use std::error::Error;
-use std::process::ExitCode;
+use crate::{Outcome, adapter, no_words};
 use tests::hard::document::{UNNOTICED, kept, rows};
 use tests::hard::judge::Questions;
 use tests::hard::probe::builds;
 
-fn main() -> ExitCode {
-    match program::no_arguments().map_err(Box::from).and_then(|()| print(&Gpu::open(&AdapterRequest::from_env())?)) {
-        Ok(true) => program::exit(0),
-        Ok(false) => program::exit(1),
-        Err(error) => {
-            program::note(format_args!("hard_cases: {error}"));
-            program::exit(1)
-        }
-    }
-}
-
-fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    program::line(format_args!("Adapter: {}\n", gpu.describe()));
+/// Prints the tables.
+pub fn run(words: &[&str]) -> Outcome {
+    no_words(words)?;
+    let gpu = &adapter()?;
     program::line("| row | input | tested by |\n| --- | --- | --- |");
     rows().iter().for_each(program::line);
     let mut sound = true;

@@ -1,29 +1,20 @@
-//! `shading_errors`: error of half floats in the shading library on the default adapter.
+//! `measure shading-errors`: error of half floats in the shading library on the default adapter.
 //!
-//! `cargo run -p tests --bin shading_errors` prints the tables of `docs/measurements/half-floats.md`. Each has a negative control,
+//! `cargo run -p tests --bin measure -- shading-errors` prints the tables of `docs/measurements/half-floats.md`. Each has a negative control,
 //! an error made on purpose that its comparison must detect. The exit code is 1 if it does not.
 
+use crate::{Outcome, adapter, no_words};
 use framegraph_shader_mirrors::cases;
-use framegraph_wgpu::{AdapterRequest, Gpu};
+use framegraph_wgpu::Gpu;
 use std::error::Error;
-use std::process::ExitCode;
 use tests::measure::half::{Form, LobeError, textbook};
 use tests::measure::half_table::{POINTS, ROUGHNESS, SAMPLES, SCENES, Studio, lobes, mirrors};
 use tests::mirror;
 
-fn main() -> ExitCode {
-    match program::no_arguments().map_err(Box::from).and_then(|()| print(&Gpu::open(&AdapterRequest::from_env())?)) {
-        Ok(true) => program::exit(0),
-        Ok(false) => program::exit(1),
-        Err(error) => {
-            program::note(format_args!("shading_errors: {error}"));
-            program::exit(1)
-        }
-    }
-}
-
-fn print(gpu: &Gpu) -> Result<bool, Box<dyn Error>> {
-    program::line(format_args!("Adapter: {}", gpu.describe()));
+/// Prints the tables.
+pub fn run(words: &[&str]) -> Outcome {
+    no_words(words)?;
+    let gpu = &adapter()?;
     framegraph_passes::Precision::Half.check(gpu)?;
     let sections = [functions(gpu)?, distribution(gpu)?, pictures(gpu)?];
     Ok(sections.into_iter().all(|noticed| noticed))

@@ -1,59 +1,47 @@
-//! `facts`: effects that feature culling drops from six scenes under four presets, and the time saved.
+//! `measure facts`: effects that feature culling drops from six scenes under four presets, and the time saved.
 //!
-//! `cargo run --release -p tests --bin facts` prints the tables of `docs/design/feature-culling.md`. `--every-mask` draws all 4096
+//! `cargo run --release -p tests --bin measure -- facts` prints the tables of `docs/design/feature-culling.md`. `--every-mask` draws all 4096
 //! combinations of twelve effects in each of six small scenes, with and without feature culling, and compares them.
 //! `--masks N` draws N evenly spread combinations instead. `--scene NAME` selects one scene.
 
-use framegraph_wgpu::{AdapterRequest, Gpu};
+use crate::{Outcome, adapter};
+use framegraph_wgpu::Gpu;
 use program::progress::Shown;
 use std::error::Error;
-use std::process::ExitCode;
 use std::time::Instant;
 use tests::measure::facts::table::{bare, heads, rows};
 use tests::measure::facts::{Drawn, Easel, MASKED, cases, compare_mask};
 
-type Outcome = Result<(), Box<dyn Error>>;
-
-fn main() -> ExitCode {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let words: Vec<&str> = args.iter().map(String::as_str).collect();
+/// Prints the tables, or compares masks.
+pub fn run(words: &[&str]) -> Outcome {
     let number = |text: &str| text.parse().ok().filter(|count| (1..=ALL_MASKS).contains(count));
     let names = cases().map(|case| case.name);
-    let (rest, scene) = match words[..] {
-        [ref rest @ .., "--scene", name] if names.contains(&name) => (rest, Some(name)),
-        ref rest => (rest, None),
+    let (rest, scene) = match words {
+        [rest @ .., "--scene", name] if names.contains(name) => (rest, Some(*name)),
+        rest => (rest, None),
     };
     let masks = match rest {
         [] if scene.is_none() => None,
         ["--every-mask"] => Some(ALL_MASKS),
         ["--masks", count] if number(count).is_some() => number(count),
         _ => {
-            let told = format!(
-                "there are --every-mask, and --masks N with a number from 1 to 4096, and behind either --scene NAME with \
-                 one of {}",
+            return Err(format!(
+                "{}: use --every-mask or --masks N (1 to 4096), optionally followed by --scene NAME with one of {}",
+                words.join(" "),
                 names.join(", ")
-            );
-            program::error(format_args!("facts {}: {told}", words.join(" ")));
-            return program::exit(2);
+            )
+            .into());
         }
     };
-    let done = Gpu::open(&AdapterRequest::from_env()).map_err(Box::from).and_then(|gpu| {
-        program::line(format_args!("adapter: {}", gpu.describe()));
-        match masks {
-            Some(count) => draw_masks(&gpu, count, scene),
-            None => print(&gpu),
-        }
-    });
-    match done {
-        Ok(()) => program::exit(0),
-        Err(error) => {
-            program::error(format_args!("facts: {error}"));
-            program::exit(1)
-        }
+    let gpu = adapter()?;
+    match masks {
+        Some(count) => draw_masks(&gpu, count, scene)?,
+        None => print(&gpu)?,
     }
+    Ok(true)
 }
 
-fn print(gpu: &Gpu) -> Outcome {
+fn print(gpu: &Gpu) -> Result<(), Box<dyn Error>> {
     let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     program::line(format_args!("load: {}", load.split(' ').next().unwrap_or("unknown")));
     program::line(format_args!("\n<!-- table: facts -->\n{}", heads()));
@@ -72,7 +60,7 @@ fn print(gpu: &Gpu) -> Outcome {
 /// Number of combinations of effects.
 const ALL_MASKS: u32 = 1 << MASKED.len();
 
-fn draw_masks(gpu: &Gpu, count: u32, scene: Option<&str>) -> Outcome {
+fn draw_masks(gpu: &Gpu, count: u32, scene: Option<&str>) -> Result<(), Box<dyn Error>> {
     let mut easel = Easel::new(gpu);
     program::line("| scene | masks | pictures that differ | largest difference, codes | beyond their bounds | s |");
     program::line("| --- | --- | --- | --- | --- | --- |");

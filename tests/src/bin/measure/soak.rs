@@ -1,11 +1,10 @@
-//! `soak`: long-running test of the standard frame with changing window size, effects and scene.
+//! `measure soak`: long-running test of the standard frame with changing window size, effects and scene.
 //!
-//! `WGPU_BACKEND=noop cargo run --release -p tests --bin soak -- --frames 100000` prints the resources in use during
+//! `WGPU_BACKEND=noop cargo run --release -p tests --bin measure -- soak --frames 100000` prints the resources in use during
 //! the run. At the end, it compares the last frame with one of a fresh run. Any error ends the run.
 
+use crate::{Outcome, adapter};
 use framegraph_wgpu::{AdapterRequest, Gpu};
-use std::error::Error;
-use std::process::ExitCode;
 use tests::soak::{Soak, Trouble};
 
 const HELP: &str = "\
@@ -20,15 +19,12 @@ soak: the standard frame under random sizes, effects and scenes
 WGPU_BACKEND=noop draws nothing and validates everything.
 ";
 
-fn main() -> ExitCode {
-    program::ended("soak", run())
-}
-
-fn run() -> Result<(), Box<dyn Error>> {
+/// Draws frames and prints rows.
+pub fn run(words: &[&str]) -> Outcome {
     let (mut frames, mut largest, mut rows) = (10_000_usize, 512_u32, 10_usize);
     let open = || Gpu::open(&AdapterRequest::from_env());
     let mut trouble = Trouble { reload_every: usize::MAX, lose_every: usize::MAX, open };
-    let mut arguments = lexopt::Parser::from_env();
+    let mut arguments = lexopt::Parser::from_args(words);
     while let Some(argument) = arguments.next()? {
         use lexopt::ValueExt;
         match argument {
@@ -39,13 +35,12 @@ fn run() -> Result<(), Box<dyn Error>> {
             lexopt::Arg::Long("lose") => trouble.lose_every = arguments.value()?.parse()?,
             lexopt::Arg::Long("help") => {
                 program::print(HELP);
-                return Ok(());
+                return Ok(true);
             }
             other => return Err(other.unexpected().into()),
         }
     }
-    let gpu = open()?;
-    program::line(format_args!("adapter: {}", gpu.describe()));
+    let gpu = adapter()?;
     program::line(
         "\n| frames | textures held | their MiB | made | shaders replaced | devices lost | resident MiB |\n| --- | --- | --- | --- | --- | --- | --- |",
     );
@@ -66,5 +61,5 @@ fn run() -> Result<(), Box<dyn Error>> {
         return Err("the last frame differs from that of a fresh run".into());
     }
     program::line("\nThe last frame is that of a fresh run.");
-    Ok(())
+    Ok(true)
 }

@@ -1,27 +1,21 @@
-//! `reflections`: accuracy of screen-space reflections on the default adapter.
+//! `measure reflections`: accuracy of screen-space reflections on the default adapter.
 //!
-//! `cargo run --release -p tests --bin reflections` prints the table of `docs/design/reflections.md`: three mirror balls over
+//! `cargo run --release -p tests --bin measure -- reflections` prints the table of `docs/design/reflections.md`: three mirror balls over
 //! a mirror floor, compared with the formulas of `truth::reflection`.
 
+use crate::{Outcome, adapter, no_words};
 use framegraph_passes::ReflectionSettings;
 use framegraph_passes::effects::depth::structure::Resolution;
-use framegraph_wgpu::{AdapterRequest, Gpu};
 use glam::DVec3;
-use std::error::Error;
-use std::process::ExitCode;
 use tests::measure::reflection::{Found, Stage};
 
 /// Width and height of the picture, in pixels.
 const SIZE: [u32; 2] = [320, 240];
 
-fn main() -> ExitCode {
-    program::ended("reflections", run())
-}
-
-fn run() -> Result<(), Box<dyn Error>> {
-    program::no_arguments()?;
-    let gpu = Gpu::open(&AdapterRequest::from_env())?;
-    program::line(format_args!("adapter: {}", gpu.describe()));
+/// Prints the table.
+pub fn run(words: &[&str]) -> Outcome {
+    no_words(words)?;
+    let gpu = adapter()?;
     program::line(
         "\n| rays | mirror | seen: found | off, median | off, 95 % | elsewhere | nothing: found | unseen: found |",
     );
@@ -45,7 +39,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     moved.earlier.eye += DVec3::new(0.3, 0.1, -0.2);
     let settings = ReflectionSettings::DEFAULT;
     rows("`on`, the eye 0.37 m away a frame ago", moved.found(&gpu, &settings, Resolution::Full)?);
-    Ok(())
+    Ok(true)
 }
 
 fn rows(what: &str, found: [Found; 2]) {

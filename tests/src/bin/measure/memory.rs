@@ -1,7 +1,8 @@
-//! `memory`: bytes that the device allocates for the standard frame under each aliasing mode.
+//! `measure memory`: bytes that the device allocates for the standard frame under each aliasing mode.
 //!
-//! `cargo run --release -p tests --bin memory` prints the table of `docs/measurements/performance.md`: one frame per size.
+//! `cargo run --release -p tests --bin measure -- memory` prints the table of `docs/measurements/performance.md`: one frame per size.
 
+use crate::{Outcome, adapter, no_words};
 use framegraph::{Alias, Options};
 use framegraph_passes::effects::bloom::BloomSettings;
 use framegraph_passes::effects::dof::DofSettings;
@@ -9,20 +10,16 @@ use framegraph_passes::effects::fog::FogSettings;
 use framegraph_passes::{Preset, Settings};
 use framegraph_wgpu::{AdapterRequest, Allocated, ExecutorOptions, FrameLoop, Gpu};
 use std::error::Error;
-use std::process::ExitCode;
 use tests::stage::Stage;
 
 const SIZES_PX: [[u32; 2]; 2] = [[1280, 720], [3840, 2160]];
 const WAYS: [(&str, Alias); 3] = [("none", Alias::Off), ("pool", Alias::Pool), ("heap", Alias::Heap)];
 
-fn main() -> ExitCode {
-    program::ended("memory", run())
-}
-
-fn run() -> Result<(), Box<dyn Error>> {
-    program::no_arguments()?;
+/// Prints the table.
+pub fn run(words: &[&str]) -> Outcome {
+    no_words(words)?;
     let open = || Gpu::open(&AdapterRequest::from_env());
-    program::line(format_args!("adapter: {}", open()?.describe()));
+    adapter()?;
     program::line(
         "\n| size | aliasing | by the plan, MiB | by wgpu, MiB | in blocks, MiB | together, MiB | of no aliasing |",
     );
@@ -41,7 +38,7 @@ fn run() -> Result<(), Box<dyn Error>> {
             ));
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 fn mib(bytes: u64) -> f64 {

@@ -1,17 +1,15 @@
-//! `lights`: cost of many lights with froxels and with a loop over all lights, on the default adapter.
+//! `measure lights`: cost of many lights with froxels and with a loop over all lights, on the default adapter.
 //!
-//! `cargo run --release -p tests --bin lights` prints the tables of `docs/design/lights.md`. Each time is the minimum of
+//! `cargo run --release -p tests --bin measure -- lights` prints the tables of `docs/design/lights.md`. Each time is the minimum of
 //! several frames, and valid for this device only.
 
+use crate::{Outcome, adapter, no_words};
 use framegraph_passes::gpu_scene::punctual::{Found, FroxelSettings, LightSearch};
 use framegraph_passes::{CameraView, Settings};
 use framegraph_scene::{LightKind, Scene, progress};
-use framegraph_wgpu::{AdapterRequest, Gpu};
+use framegraph_wgpu::Gpu;
 use std::error::Error;
-use std::process::ExitCode;
 use tests::measure::lights::Night;
-
-type Outcome = Result<(), Box<dyn Error>>;
 
 /// Width and height of the pictures, in pixels.
 const SIZE_PX: [u32; 2] = [640, 360];
@@ -22,17 +20,13 @@ const VIEWS: u32 = 9;
 /// Sample points in each light for the second table.
 const SAMPLES: u32 = 20_000;
 
-fn main() -> ExitCode {
-    program::ended(
-        "lights",
-        program::no_arguments().map_err(Box::from).and_then(|()| print(&Gpu::open(&AdapterRequest::from_env())?)),
-    )
-}
-
-fn print(gpu: &Gpu) -> Outcome {
-    program::line(format_args!("adapter: {}", gpu.describe()));
-    times(gpu)?;
-    lists(gpu)
+/// Prints the tables.
+pub fn run(words: &[&str]) -> Outcome {
+    no_words(words)?;
+    let gpu = adapter()?;
+    times(&gpu)?;
+    lists(&gpu)?;
+    Ok(true)
 }
 
 fn night(gpu: &Gpu, name: &str) -> Result<Night, Box<dyn Error>> {
@@ -42,7 +36,7 @@ fn night(gpu: &Gpu, name: &str) -> Result<Night, Box<dyn Error>> {
 }
 
 /// Measures frames with froxels and with all lights, and the CPU time of building the lists.
-fn times(gpu: &Gpu) -> Outcome {
+fn times(gpu: &Gpu) -> Result<(), Box<dyn Error>> {
     program::line("\n| lamps | a list | longest list | lists, ms | froxels, ms | all, ms | largest difference |");
     program::line("| --- | --- | --- | --- | --- | --- | --- |");
     let froxels = LightSearch::Froxels(FroxelSettings::DEFAULT);
@@ -74,7 +68,7 @@ fn length(view: &CameraView) -> Result<(f64, usize), Box<dyn Error>> {
 }
 
 /// Compares the number of list entries with the number needed.
-fn lists(gpu: &Gpu) -> Outcome {
+fn lists(gpu: &Gpu) -> Result<(), Box<dyn Error>> {
     program::line("\n| lamps | froxels | entries | needed | entries for each needed | lists, ms |");
     program::line("| --- | --- | --- | --- | --- | --- |");
     let cuts = [
