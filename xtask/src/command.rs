@@ -4,7 +4,6 @@ mod bench;
 mod circles;
 mod corpus;
 mod demo;
-mod documents;
 mod frames;
 mod gallery;
 mod mutants;
@@ -36,7 +35,6 @@ pub const ALL: &[Command] = &[
     mutants::COMMAND,
     bench::COMMAND,
     prove::COMMAND,
-    documents::COMMAND,
     gallery::COMMAND,
     circles::COMMAND,
     prose::COMMAND,

@@ -1,4 +1,4 @@
-//! `cargo xtask mutants`: mutation testing of shaders and passes.
+//! `cargo xtask mutants`: mutation testing of shaders.
 
 use super::Command;
 use crate::Failure;
@@ -19,8 +19,8 @@ pub const COMMAND: Command = Command {
 Sets of files, all of them by default:
   wgsl       shaders/wgsl; replaced when a test starts, without a rebuild
   occlusion  the shaders of ambient occlusion; replaced in the same way
-  passes     upload, view, sun and drawing; built in a copy of the workspace
-  layout     shaders/src/layout; built in a copy of the workspace
+
+For Rust, use cargo-mutants: CONTRIBUTING.md has its command.
 
 Changes one line of the source at a time, and runs tests until one fails. Tries a
 fixed sample of each set, which takes up to an hour, and prints its progress. An

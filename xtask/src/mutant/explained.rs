@@ -224,12 +224,6 @@ pub const EXPLAINED: &[Explained] = &[
         after: "return tints[min(select(5u, cascade, cascade < CASCADES), 4u)];",
         why: "Indices beyond 4 are clamped to 4.",
     },
-    Explained {
-        file: "passes/src/gpu_scene/upload/textures.rs",
-        before: "gpu.wait()?;",
-        after: "",
-        why: "The wait only frees staging memory earlier; the uploaded data are the same.",
-    },
 ];
 
 /// Returns the reason a surviving mutant is not a gap in the tests, if it is listed.

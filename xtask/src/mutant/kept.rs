@@ -75,14 +75,14 @@ impl Kept {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mutant::plant::{Language, mutants};
+    use crate::mutant::plant::mutants;
     use crate::tree::Tree;
 
     #[test]
     fn fates_are_found_again_while_the_judge_is_the_same() {
         let tree = Tree::new(&[]);
         let file = tree.root().join("fates");
-        let [first, second] = &mutants("a.wgsl", "a = b + c;", Language::Wgsl)[..2] else { panic!("two faults") };
+        let [first, second] = &mutants("a.wgsl", "a = b + c;")[..2] else { panic!("two faults") };
         let kept = Kept::read(&file, 7);
         kept.keep(first, Fate::Noticed, "a::b");
         let again = Kept::read(&file, 7);

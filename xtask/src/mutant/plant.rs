@@ -1,4 +1,4 @@
-//! Generation of mutants from lines of WGSL or Rust.
+//! Generation of mutants from lines of WGSL.
 //!
 //! Sources are formatted, so a binary operator has a space on either side and a generic bracket has none. Mutants that
 //! do not compile are discarded later.
@@ -67,13 +67,6 @@ impl Mutant {
     }
 }
 
-/// Language of a source text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Language {
-    Wgsl,
-    Rust,
-}
-
 const OPERATORS: [(&str, &str); 12] = [
     (" + ", " - "),
     (" - ", " + "),
@@ -101,16 +94,11 @@ const COMPARISONS: [(&str, &str); 8] = [
 ];
 
 /// Returns every possible mutant of a text.
-pub fn mutants(file: &str, text: &str, language: Language) -> Vec<Mutant> {
-    // Unit tests are at the end of a file.
-    let text = match language {
-        Language::Rust => text.split("#[cfg(test)]").next().unwrap_or_default(),
-        Language::Wgsl => text,
-    };
+pub fn mutants(file: &str, text: &str) -> Vec<Mutant> {
     let mut found = Vec::new();
     for (index, line) in text.lines().enumerate() {
         let code = code_of(line);
-        if !is_code(code, language) {
+        if !is_code(code) {
             continue;
         }
         let mut add = |kind, after: String| {
@@ -143,14 +131,10 @@ fn code_of(line: &str) -> &str {
 }
 
 /// Returns true for lines that compute something, unlike attributes, imports and declarations of types and bindings.
-fn is_code(code: &str, language: Language) -> bool {
+fn is_code(code: &str) -> bool {
     let code = code.trim();
-    let never = ["import", "use ", "pub use", "@group", "@if", "@else", "struct", "#[", "assert", "debug_assert", "}"];
-    let rust =
-        ["impl", "where", "pub fn", "fn ", "pub(super) fn", "pub struct", "pub enum", "pub mod", "mod ", "type "];
-    !code.is_empty()
-        && !never.iter().any(|start| code.starts_with(start))
-        && (language == Language::Wgsl || !code.contains('"') && !rust.iter().any(|start| code.starts_with(start)))
+    let never = ["import", "@group", "@if", "@else", "struct", "}"];
+    !code.is_empty() && !never.iter().any(|start| code.starts_with(start))
 }
 
 /// Returns true for an assignment or call on a single line.
@@ -241,7 +225,7 @@ mod tests {
     use super::*;
 
     fn after(line: &str, kind: Kind) -> Vec<String> {
-        let mutants = mutants("a.wgsl", line, Language::Wgsl);
+        let mutants = mutants("a.wgsl", line);
         mutants.into_iter().filter(|m| m.kind == kind).map(|m| m.after).collect()
     }
 
@@ -273,11 +257,9 @@ mod tests {
     #[test]
     fn a_fault_is_planted_in_its_line_alone() {
         let text = "a = b + c;\na = b + c;\n";
-        let all = mutants("a.wgsl", text, Language::Wgsl);
+        let all = mutants("a.wgsl", text);
         let second = all.iter().find(|m| m.line == 2 && m.kind == Kind::Operator).expect("there is one");
         assert_eq!(second.planted(text), "a = b + c;\na = b - c;\n");
         assert_eq!(second.rank(), all[0].rank(), "the same fault, wherever it stands");
-        let tests = "let a = b + c;\n#[cfg(test)]\nmod tests { let a = b + c; }";
-        assert_eq!(mutants("a.rs", tests, Language::Rust).len(), 1);
     }
 }

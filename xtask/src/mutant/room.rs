@@ -1,6 +1,6 @@
 //! Files that are mutated, and the tests that judge the mutants.
 
-use crate::mutant::plant::{Language, Mutant, mutants};
+use crate::mutant::plant::{Mutant, mutants};
 use crate::{Failure, workspace};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 pub struct Room {
     /// Name on the command line, after `cargo xtask mutants`.
     pub name: &'static str,
-    pub language: Language,
     /// Files and folders from the workspace's root, and prefixes of files in them that belong to another room.
     pub paths: &'static [&'static str],
     pub without: &'static [&'static str],
@@ -30,9 +29,6 @@ pub struct Judge {
     pub without: &'static [&'static str],
 }
 
-const PASSES: Judge = Judge { binary: &["--package", "framegraph-passes", "--lib"], filters: &[""], without: &[] };
-const SHADERS: Judge =
-    Judge { binary: &["--package", "framegraph-shaders", "--lib"], filters: &["layout::"], without: &[] };
 /// Tests across packages, except tests of plans, documents and programs, and tests that take a minute.
 const IT: Judge = Judge {
     binary: &["--package", "tests", "--test", "it"],
@@ -82,67 +78,14 @@ const IT: Judge = Judge {
     without: &[],
 };
 
-/// Tests of uploading, placing and drawing scenes. It is unknown which tests a line of Rust affects, so all of them
-/// run.
-const DRAWN: Judge = Judge {
-    binary: IT.binary,
-    filters: &[
-        "degenerate::",
-        "inputs::",
-        "instances::",
-        "kept_shadows::",
-        "punctual_lights::",
-        "levels::",
-        "lights::",
-        "parts::",
-        "prepass::",
-        "samplers::",
-        "shadow_atlas::",
-        "shadows::",
-        "skies::",
-        "transmission::",
-        "velocity::",
-        "views::",
-    ],
-    without: &[],
-};
-
 /// Passes of ambient occlusion.
 const OCCLUSION: &[&str] =
     &["shaders/wgsl/pass/occlusion.wgsl", "shaders/wgsl/pass/structure.wgsl", "shaders/wgsl/pass/bilateral.wgsl"];
 
 /// All rooms.
 pub const ROOMS: &[Room] = &[
-    Room {
-        name: "wgsl",
-        language: Language::Wgsl,
-        paths: &["shaders/wgsl"],
-        without: OCCLUSION,
-        sample: 220,
-        judges: &[IT],
-    },
-    Room { name: "occlusion", language: Language::Wgsl, paths: OCCLUSION, without: &[], sample: 40, judges: &[IT] },
-    Room {
-        name: "passes",
-        language: Language::Rust,
-        without: &[],
-        paths: &[
-            "passes/src/gpu_scene/upload",
-            "passes/src/gpu_scene/view.rs",
-            "passes/src/light/sun.rs",
-            "passes/src/gpu_scene/draw.rs",
-        ],
-        sample: 20,
-        judges: &[PASSES, DRAWN],
-    },
-    Room {
-        name: "layout",
-        language: Language::Rust,
-        paths: &["shaders/src/layout"],
-        without: &[],
-        sample: 20,
-        judges: &[SHADERS, IT],
-    },
+    Room { name: "wgsl", paths: &["shaders/wgsl"], without: OCCLUSION, sample: 220, judges: &[IT] },
+    Room { name: "occlusion", paths: OCCLUSION, without: &[], sample: 40, judges: &[IT] },
 ];
 
 impl Room {
@@ -164,7 +107,7 @@ impl Room {
         let root = workspace::root();
         let mut found = BTreeMap::new();
         let paths: Vec<PathBuf> = self.paths.iter().map(|path| root.join(path)).collect();
-        for path in files(&paths, self.language)? {
+        for path in files(&paths)? {
             let file = path.strip_prefix(&root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
             if !self.without.iter().any(|start| file.starts_with(start)) {
                 found.insert(file, std::fs::read_to_string(&path).map_err(|error| unread(&path, &error))?);
@@ -179,25 +122,23 @@ impl Room {
     /// A file cannot be read.
     pub fn mutants(&self) -> Result<Vec<Mutant>, Failure> {
         let sources = self.sources()?;
-        let mut found: Vec<Mutant> =
-            sources.iter().flat_map(|(file, text)| mutants(file, text, self.language)).collect();
+        let mut found: Vec<Mutant> = sources.iter().flat_map(|(file, text)| mutants(file, text)).collect();
         found.sort_by_key(|m| (m.rank(), m.file.clone(), m.line));
         Ok(found)
     }
 }
 
-/// Returns the files of a language in `open`, a list of files and folders, without tests, sorted.
+/// Returns the WGSL files in `open`, a list of files and folders, sorted.
 ///
 /// # Errors
 /// A folder cannot be read.
-pub fn files(open: &[PathBuf], language: Language) -> Result<Vec<PathBuf>, Failure> {
+pub fn files(open: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let (mut open, mut files) = (open.to_vec(), Vec::new());
-    let ending = if language == Language::Wgsl { "wgsl" } else { "rs" };
     while let Some(path) = open.pop() {
         if path.is_dir() {
             let entries = std::fs::read_dir(&path).map_err(|error| unread(&path, &error))?;
             open.extend(entries.flatten().map(|entry| entry.path()));
-        } else if path.extension().is_some_and(|e| e == ending) && !path.ends_with("tests.rs") {
+        } else if path.extension().is_some_and(|e| e == "wgsl") {
             files.push(path);
         }
     }

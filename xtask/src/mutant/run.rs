@@ -3,14 +3,13 @@
 
 use crate::mutant::judge::{self, Replaced, Says, Test};
 use crate::mutant::kept::Kept;
-use crate::mutant::plant::{Language, Mutant};
+use crate::mutant::plant::Mutant;
 use crate::mutant::room::{self, Judge, Room};
 use crate::mutant::workers;
 use crate::{Failure, workspace};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 
 /// Result of a mutant.
@@ -29,9 +28,6 @@ pub enum Fate {
 /// Environment in which mutants run.
 pub struct Bench<'a> {
     room: &'a Room,
-    /// Workspace that is built: this one, or a copy.
-    tree: PathBuf,
-    build: PathBuf,
     /// Test programs that no mutant rebuilds, in the order of the room's judges.
     built: Vec<PathBuf>,
     tests: Vec<Test>,
@@ -44,33 +40,14 @@ impl<'a> Bench<'a> {
     /// Creates a bench for the mutants of a room.
     ///
     /// # Errors
-    /// The copy of the workspace cannot be written, or the tests fail or do not compile without a mutant.
+    /// A file cannot be written, or the tests fail or do not compile without a mutant.
     pub fn new(room: &'a Room) -> Result<Self, Failure> {
         let root = workspace::root();
-        if room.language == Language::Wgsl {
-            return Self::checked(room, root.join("target"), root);
-        }
-        let tree = root.join("target/mutants/tree");
-        let listed = Command::new("git").current_dir(&root).args(["ls-files", "-z"]).output();
-        let listed = listed.map_err(|error| Failure::Failed(format!("`git ls-files`: {error}")))?;
-        for file in String::from_utf8_lossy(&listed.stdout).split('\0').filter(|file| !file.is_empty()) {
-            let (from, to) = (root.join(file), tree.join(file));
-            // An unchanged file keeps its time stamp and is not rebuilt.
-            let same = fs::read(&from).ok().is_some_and(|bytes| fs::read(&to).is_ok_and(|other| other == bytes));
-            if !same && from.exists() {
-                write(&to, &fs::read(&from).map_err(|error| told(&from, &error))?)?;
-            }
-        }
-        // Cargo identifies artifacts by paths within a workspace, so the copy needs its own target folder.
-        Self::checked(room, root.join("target/mutants/build"), tree)
-    }
-
-    fn checked(room: &'a Room, build: PathBuf, tree: PathBuf) -> Result<Self, Failure> {
-        let folder = workspace::root().join("target/mutants");
+        let folder = root.join("target/mutants");
         fs::create_dir_all(&folder).map_err(|error| told(&folder, &error))?;
         let kept_in = folder.join(format!("{}.fates", room.name));
         let (kept, sources) = (Kept::default(), room.sources()?);
-        let mut bench = Self { room, tree, build, built: Vec::new(), tests: Vec::new(), kept, sources };
+        let mut bench = Self { room, built: Vec::new(), tests: Vec::new(), kept, sources };
         let built =
             bench.programs()?.ok_or_else(|| Failure::Failed("the tests do not compile without a mutant".into()))?;
         let copies = built.iter().enumerate().map(|(judge, program)| bench.copied(judge, program));
@@ -91,7 +68,7 @@ impl<'a> Bench<'a> {
     /// Returns the hash of the texts that line numbers refer to.
     fn lines_of(&self) -> u64 {
         let shaders = workspace::root().join("shaders/wgsl");
-        let texts = room::files(&[shaders], Language::Wgsl).unwrap_or_default().into_iter().map(fs::read);
+        let texts = room::files(&[shaders]).unwrap_or_default().into_iter().map(fs::read);
         texts.flatten().fold(0, |known, text| hash(known, &text))
     }
 
@@ -127,7 +104,7 @@ impl<'a> Bench<'a> {
 
     /// Returns the working folder of a judge: the folder of its package.
     fn folder(&self, judge: usize) -> PathBuf {
-        self.tree.join(self.room.judges[judge].binary[1].trim_start_matches("framegraph-"))
+        workspace::root().join(self.room.judges[judge].binary[1].trim_start_matches("framegraph-"))
     }
 
     /// Runs the quick tests for each mutant, and the slow ones if the quick tests are `done`. Reports each result by
@@ -141,8 +118,7 @@ impl<'a> Bench<'a> {
         done: bool,
         told: impl Fn(usize, Fate) + Sync,
     ) -> Result<Vec<Fate>, Failure> {
-        let workers = if self.room.language == Language::Wgsl { workers::processors() } else { 1 };
-        workers::share(workers, mutants.len(), |worker, index| {
+        workers::share(workers::processors(), mutants.len(), |worker, index| {
             let fate = self.fate(&mutants[index], done, worker)?;
             told(index, fate);
             Ok(fate)
@@ -164,35 +140,21 @@ impl<'a> Bench<'a> {
     fn tried(&self, mutant: &Mutant, done: bool, worker: usize) -> Result<(Fate, &str), Failure> {
         let source = self.sources.get(&mutant.file).map_or("", String::as_str);
         let planted = mutant.planted(source);
-        if self.room.language == Language::Wgsl {
-            let folder = workspace::root().join(format!("target/mutants/{}{worker}", self.room.name));
-            // Removes the replaced file of an earlier mutant.
-            let _ = fs::remove_dir_all(&folder);
-            let path = mutant.file.trim_start_matches("shaders/wgsl/");
-            write(&folder.join(path), planted.as_bytes())?;
-            return self.judged(&self.built, (mutant, done), Some((&folder, path)));
-        }
-        let file = self.tree.join(&mutant.file);
-        let sound = fs::read(&file).map_err(|error| told(&file, &error))?;
-        write(&file, planted.as_bytes())?;
-        let fate = self.programs().and_then(|built| match built {
-            None => Ok((Fate::Refused, "")),
-            Some(programs) => self.judged(&programs, (mutant, done), None),
-        });
-        write(&file, &sound)?;
-        fate
+        let folder = workspace::root().join(format!("target/mutants/{}{worker}", self.room.name));
+        // Removes the replaced file of an earlier mutant.
+        let _ = fs::remove_dir_all(&folder);
+        let path = mutant.file.trim_start_matches("shaders/wgsl/");
+        write(&folder.join(path), planted.as_bytes())?;
+        self.judged(&self.built, (mutant, done), Some((&folder, path)))
     }
 
     /// Builds the test programs, in the order of the judges; `None` if the sources do not compile.
     fn programs(&self) -> Result<Option<Vec<PathBuf>>, Failure> {
         let mut programs = Vec::new();
         for Judge { binary, .. } in self.room.judges {
-            let mut cargo = workspace::cargo(&["test", "--quiet", "--no-run", "--message-format=json"]);
-            // Programs that are built once use an optimized build, which halves the time of the tests.
-            if self.room.language == Language::Wgsl {
-                cargo.arg("--release");
-            }
-            cargo.current_dir(&self.tree).args(*binary).env("CARGO_TARGET_DIR", &self.build);
+            // An optimized build halves the time of the tests.
+            let mut cargo = workspace::cargo(&["test", "--release", "--quiet", "--no-run", "--message-format=json"]);
+            cargo.current_dir(workspace::root()).args(*binary);
             let output = cargo.output().map_err(|error| Failure::Failed(format!("cargo: {error}")))?;
             if !output.status.success() {
                 return Ok(None);
@@ -213,7 +175,7 @@ impl<'a> Bench<'a> {
 
     /// Copies a test program without a mutant, so that later builds in this workspace do not replace it.
     fn copied(&self, judge: usize, program: &Path) -> Result<PathBuf, Failure> {
-        let folder = self.build.join("mutants/judges");
+        let folder = workspace::root().join("target/mutants/judges");
         let copy = folder.join(format!("{}{judge}", self.room.name));
         // A running copy of an interrupted run cannot be overwritten.
         let _ = fs::remove_file(&copy);

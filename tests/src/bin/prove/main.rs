@@ -68,8 +68,7 @@ fn run(args: &Args) -> Result<Vec<String>, String> {
 /// Creates the document, without the long tables if `quick` is set.
 fn document(args: &Args) -> Result<Document, String> {
     let mut document = Document::new(
-        "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables except those of long runs, which\n\
-         `cargo xtask documents` compares. Another test checks that the figures of each row are consistent. Apart from times,\n\
+        "# Proofs\n\nPrinted by `cargo xtask prove`. A test compares all tables except those of long runs. Apart from times,\n\
          the figures are the same on every machine. Peak memory and speed are in [performance.md](performance.md).\n",
     );
     aliasing::section(&mut document, aliasing::QUICK, "");
