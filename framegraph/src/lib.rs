@@ -76,6 +76,8 @@
 //! Without features, the crate depends only on the memory packer ([`pack`]) and on `triomphe`, an `Arc` without weak
 //! counts.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod access;
 mod backend;
 pub mod barrier;

@@ -118,6 +118,8 @@
 //! | `files` | frames from graph files, with the feature of the same name in [`framegraph`] | no |
 //! | `testing` | module `mock` | no |
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod cache;
 pub mod debug;
 mod device;
