@@ -8,6 +8,7 @@ mod documents;
 mod frames;
 mod gallery;
 mod mutants;
+mod package;
 mod prose;
 mod prove;
 mod rooms;
@@ -42,4 +43,5 @@ pub const ALL: &[Command] = &[
     prose::COMMAND,
     rooms::COMMAND,
     corpus::COMMAND,
+    package::COMMAND,
 ];
