@@ -75,6 +75,8 @@
 //! Without features, the crate depends only on the memory packer ([`pack`]) and on `triomphe`, an `Arc` without weak
 //! counts.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 // Unit tests that look at private arrays need random graphs of this very crate, so they compile the generator into it.
 #[cfg(test)]
 extern crate self as framegraph;

@@ -111,6 +111,8 @@
 //!   [`Lighting`] is plain data, to be filled with light that was prefiltered elsewhere.
 //! - `files`: settings files, and the standard passes as plugins of graph files.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 #[cfg(test)]
 mod adapter;
 pub mod effects;

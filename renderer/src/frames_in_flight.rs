@@ -1,12 +1,12 @@
 //! Limits the number of queued frames, and thereby the latency between input and display.
 
+use crate::clock::Instant;
 use crate::device::error::DeviceError;
 use crate::device::gpu::Gpu;
 use crate::measure::statistics::{Durations, Summary};
 use std::collections::VecDeque;
 use std::num::NonZeroU32;
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
 use wgpu::{PollType, SubmissionIndex};
 
 /// Frames that were submitted and are not known to be finished on the device.
@@ -66,7 +66,7 @@ impl FramesInFlight {
         self.max
     }
 
-    /// Begins a frame. Blocks until fewer frames than the maximum are queued.
+    /// Begins a frame. Blocks until fewer frames than the maximum are queued, except in browsers.
     ///
     /// # Errors
     /// Fails if the device is lost.

@@ -118,7 +118,10 @@
 //! | `files` | frames from graph files, with the feature of the same name in [`framegraph`] | no |
 //! | `testing` | module `mock` | no |
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod cache;
+mod clock;
 pub mod debug;
 mod device;
 mod execute;

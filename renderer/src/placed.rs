@@ -25,6 +25,10 @@ pub(crate) mod driver;
 #[path = "placed/no_driver.rs"]
 pub(crate) mod driver;
 pub(crate) mod not_placed;
+#[cfg_attr(
+    not(all(feature = "vulkan", any(windows, target_os = "linux", target_os = "android", target_os = "freebsd"))),
+    expect(dead_code, reason = "nothing is placed")
+)]
 pub(crate) mod resting_usage;
 pub(crate) mod shape;
 pub(crate) mod submission;

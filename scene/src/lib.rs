@@ -76,6 +76,8 @@
 //! | [`color`], [`color_table`], [`picture`] | Color conversions, `.cube` tables, image files |
 //! | [`memory`], [`progress`], [`parallel`], [`error`] | Memory budget, progress reports, threads, errors |
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod batch;
 pub mod bounds;
 pub mod boxes;

@@ -45,6 +45,8 @@
 //! # Ok::<(), framegraph_shaders::ShaderError>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod effect;
 mod error;
 pub mod feature;

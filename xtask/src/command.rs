@@ -7,6 +7,7 @@ mod demo;
 mod frames;
 mod gallery;
 mod mutants;
+mod package;
 mod prose;
 mod prove;
 mod rooms;
@@ -40,4 +41,5 @@ pub const ALL: &[Command] = &[
     prose::COMMAND,
     rooms::COMMAND,
     corpus::COMMAND,
+    package::COMMAND,
 ];

@@ -8,6 +8,7 @@
 //! - [`adapter`]: finds a GPU or software driver, or the packages that install one.
 //! - [`lints`]: compiler wrapper that lints and documents.
 //! - [`mutant`]: mutation testing.
+//! - [`package`]: packages for crates.io.
 //! - [`prose`]: style check of documentation, comments and messages.
 //! - [`source`]: Rust files of the packages: product code, modules, cycles.
 //! - [`rustc_time`]: compiler wrapper that times crates.
@@ -22,6 +23,7 @@ mod command;
 mod lints;
 mod mutant;
 mod options;
+mod package;
 mod prose;
 mod rustc_time;
 mod source;

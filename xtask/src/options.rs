@@ -51,7 +51,7 @@ const OWN: [Own; 15] = [
     Own { name: "--beside", valued: true, commands: &["bench"] },
     Own { name: "--with", valued: true, commands: &["bench"] },
     Own { name: "--rounds", valued: true, commands: &["bench"] },
-    Own { name: "--build", valued: false, commands: &["rooms"] },
+    Own { name: "--build", valued: false, commands: &["rooms", "package"] },
     Own { name: "--quick", valued: false, commands: &["prove"] },
     Own { name: "--dsa", valued: true, commands: &["prove"] },
     Own { name: "--out", valued: true, commands: &["prove", "mutants"] },
@@ -159,7 +159,7 @@ Options:
   --frames, --scene NAME, --preset NAME, --size WxH, --beside COMMAND,
   --with ARGS, --rounds N
                 of `bench`: see `cargo xtask bench --help`
-  --build       of `rooms`: see `cargo xtask rooms --help`
+  --build       of `rooms` and `package`: see the `--help` of each
   DIR, --out FOLDER, --jobs N, --seconds N, --memory SIZE, --size WxH,
   --render PROGRAM
                 of `corpus`: see `cargo xtask corpus --help`
@@ -213,7 +213,7 @@ mod tests {
         let Ok(Request::Run(_, options)) = read("--dsa some/folder prove --out a.md") else { panic!("sound") };
         assert_eq!(options.words().collect::<Vec<_>>(), ["--dsa", "some/folder", "--out", "a.md"]);
         assert_eq!(refusal("one --quick"), "`--quick` is an option of `prove` only");
-        assert_eq!(refusal("one --build"), "`--build` is an option of `rooms` only");
+        assert_eq!(refusal("one --build"), "`--build` is an option of `rooms` and `package` only");
         assert_eq!(refusal("one --out a"), "`--out` is an option of `prove` and `mutants` only");
         assert_eq!(refusal("prove --dsa"), "`--dsa` needs a value");
     }

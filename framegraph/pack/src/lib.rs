@@ -43,6 +43,8 @@
 //! | `serde` | no | `Serialize` and `Deserialize` for [`Effort`] |
 //! | `testing` | no | random instances, instances with a known optimum, and CSV tables |
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod canonical;
 pub mod classes;
 #[cfg(feature = "testing")]

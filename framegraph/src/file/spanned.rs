@@ -115,8 +115,8 @@ impl<'t> Source<'t> {
 
     fn place_at(&self, address: usize) -> (usize, usize) {
         let (_, text) = self.holding(address);
-        let offset = address.saturating_sub(text.as_ptr().addr());
-        let before = &text[..text.floor_char_boundary(offset)];
+        let offset = address.saturating_sub(text.as_ptr().addr()).min(text.len());
+        let before = (0..=offset).rev().find_map(|end| text.get(..end)).unwrap_or_default();
         let line = 1 + before.matches('\n').count();
         let column = 1 + before.chars().rev().take_while(|c| *c != '\n').count();
         (line, column)

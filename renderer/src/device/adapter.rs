@@ -1,6 +1,8 @@
 //! Adapter selection: prefers hardware over software and follows environment variables.
 
-use wgpu::{Adapter, AdapterInfo, Backend, Backends, DeviceType, Instance, Limits};
+#[cfg(not(target_arch = "wasm32"))]
+use wgpu::{Adapter, Instance, Limits};
+use wgpu::{AdapterInfo, Backend, Backends, DeviceType};
 
 /// Requirements for an adapter. Programs usually create it with [`AdapterRequest::from_env`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,6 +56,7 @@ impl AdapterRequest {
 
 /// Returns a sort key; smaller is better. Discrete GPUs come first, then integrated, virtual and unknown ones, then
 /// software. Ties prefer Vulkan and Metal, then DirectX 12, WebGPU and OpenGL.
+#[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "browsers choose the adapter"))]
 pub(crate) fn rank(info: &AdapterInfo) -> (u8, u8) {
     let kind = match info.device_type {
         DeviceType::DiscreteGpu => 0,
@@ -74,6 +77,7 @@ pub(crate) fn rank(info: &AdapterInfo) -> (u8, u8) {
 
 /// Returns whether the system may have a GPU. On Linux every GPU driver has a device node; checking it is faster than
 /// starting a graphics API, and prints no complaints.
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn may_have_hardware() -> bool {
     let nodes = ["/dev/dri", "/dev/nvidiactl", "/dev/dxg", "/dev/kgsl-3d0", "/dev/mali0"];
     !cfg!(target_os = "linux") || nodes.iter().any(|node| std::path::Path::new(node).exists())
@@ -102,6 +106,7 @@ pub fn describe(info: &AdapterInfo) -> String {
 
 /// Enumerates the adapters of the requested graphics APIs. Secondary APIs are enumerated only if the primary ones have
 /// no acceptable adapter, or only software although there may be a GPU.
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn adapters(request: &AdapterRequest) -> Vec<Adapter> {
     let first = enumerate(request.backends & Backends::PRIMARY);
     let enough = |info: AdapterInfo| request.accepts(&info) && !(is_software(&info) && may_have_hardware());
@@ -112,6 +117,7 @@ pub(crate) fn adapters(request: &AdapterRequest) -> Vec<Adapter> {
     first.into_iter().chain(enumerate(rest)).collect()
 }
 
+#[cfg(not(target_arch = "wasm32"))]
 fn enumerate(backends: Backends) -> Vec<Adapter> {
     if backends.is_empty() {
         return Vec::new();
@@ -128,6 +134,7 @@ fn enumerate(backends: Backends) -> Vec<Adapter> {
 
 /// Returns WebGPU's default limits with multiview. The default limits of wgpu's noop adapter are so large that they
 /// overflow inside wgpu.
+#[cfg(not(target_arch = "wasm32"))]
 fn noop_limits() -> Limits {
     Limits { max_multiview_view_count: u32::BITS, ..Limits::default() }
 }

@@ -114,7 +114,8 @@ impl DeviceErrors {
 #[must_use = "errors are reported by `close`"]
 pub struct ErrorScopes {
     // Scopes are closed in reverse order of opening.
-    guards: [ErrorScopeGuard; 3],
+    /// `None` in browsers, which close scopes asynchronously: the device's handler reports errors there.
+    guards: Option<[ErrorScopeGuard; 3]>,
     counted: Counted,
 }
 
@@ -138,7 +139,8 @@ impl ErrorScopes {
     /// Opens the scopes. Errors of this thread are caught from now on.
     pub fn open(device: &Device) -> Self {
         let kinds = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation];
-        Self { guards: kinds.map(|kind| device.push_error_scope(kind)), counted: Counted::new() }
+        let open = || kinds.map(|kind| device.push_error_scope(kind));
+        Self { guards: (!cfg!(target_arch = "wasm32")).then(open), counted: Counted::new() }
     }
 
     /// Closes the scopes.
@@ -146,7 +148,8 @@ impl ErrorScopes {
     /// # Errors
     /// Returns the most severe error that was caught: out of memory, then internal errors, then validation errors.
     pub fn close(self, doing: &'static str) -> Result<(), DeviceError> {
-        let Self { guards: [internal, memory, validation], counted: _counted } = self;
+        let Self { guards, counted: _counted } = self;
+        let Some([internal, memory, validation]) = guards else { return Ok(()) };
         let validation = pollster::block_on(validation.pop());
         let memory = pollster::block_on(memory.pop());
         let internal = pollster::block_on(internal.pop());

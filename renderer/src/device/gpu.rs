@@ -1,6 +1,8 @@
 //! The opened device with its queue, limits and features, and the errors it reported.
 
-use crate::device::adapter::{AdapterRequest, adapters, describe, is_software, rank};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::device::adapter::{AdapterRequest, adapters, rank};
+use crate::device::adapter::{describe, is_software};
 use crate::device::caps::caps_of;
 use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes, Watch};
 use crate::device::format::texture_format;
@@ -8,8 +10,8 @@ use crate::device::open_error::OpenError;
 use framegraph::{Caps, Format};
 use std::sync::{Arc, OnceLock, atomic};
 use wgpu::{
-    Adapter, AdapterInfo, Backend, Device, DownlevelFlags, Features, Instance, Queue, TextureFormatFeatureFlags,
-    TextureFormatFeatures, TextureUsages,
+    Adapter, AdapterInfo, Backend, Device, DownlevelFlags, Features, Instance, Queue, RequestAdapterOptions, Surface,
+    TextureFormatFeatureFlags, TextureFormatFeatures, TextureUsages,
 };
 
 /// A wgpu device with its queue. Clones refer to the same device and are cheap.
@@ -80,6 +82,7 @@ impl Gpu {
     ///
     /// # Errors
     /// Fails with [`OpenError`], which lists the adapters and their reasons.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn open(request: &AdapterRequest) -> Result<Self, OpenError> {
         request.check()?;
         let built = Instance::enabled_backend_features();
@@ -103,12 +106,29 @@ impl Gpu {
         Err(OpenError::Refused { refusals })
     }
 
+    /// Opens a device on the adapter that wgpu prefers, and that can draw into `surface` if there is one.
+    ///
+    /// Browsers have only this way, because they open devices asynchronously. Other programs can block on the future.
+    /// Errors are handled as by `Gpu::open`. In browsers, wgpu may report a rejected call one frame later.
+    ///
+    /// # Errors
+    /// Fails with [`OpenError`] if no adapter fits, or if it cannot open a device.
+    pub async fn request(instance: &Instance, surface: Option<&Surface<'_>>) -> Result<Self, OpenError> {
+        let options = RequestAdapterOptions { compatible_surface: surface, ..Default::default() };
+        let adapter = instance.request_adapter(&options).await;
+        let adapter = adapter.map_err(|error| OpenError::NoneFits { reason: error.to_string() })?;
+        match adapter.request_device(&Self::descriptor(&adapter)).await {
+            Ok((device, queue)) => Ok(Self::owned(adapter, device, queue)),
+            Err(error) => Err(OpenError::Refused { refusals: vec![(adapter.get_info(), error.to_string())] }),
+        }
+    }
+
     /// Opens a device that validates all calls and draws nothing, for tests without a driver. Requires the feature
     /// `noop`.
     ///
     /// # Errors
     /// Fails with [`OpenError`] if wgpu cannot open the noop device, which is not known to happen.
-    #[cfg(feature = "noop")]
+    #[cfg(all(feature = "noop", not(target_arch = "wasm32")))]
     pub fn noop() -> Result<Self, OpenError> {
         Self::open(&AdapterRequest { backends: wgpu::Backends::NOOP, ..AdapterRequest::default() })
     }
@@ -256,7 +276,7 @@ impl Gpu {
         self.poll_as(wgpu::PollType::Poll, "looking for finished work")
     }
 
-    /// Waits until all submitted work is done.
+    /// Waits until all submitted work is done. In browsers, which cannot wait, this is [`Gpu::poll`].
     ///
     /// # Errors
     /// Fails if the device is lost.
@@ -272,6 +292,8 @@ impl Gpu {
 
     pub(crate) fn poll_as(&self, kind: wgpu::PollType, doing: &'static str) -> Result<(), DeviceError> {
         self.errors.check(doing)?;
+        // Browsers cannot wait: they call back when the program returns to them.
+        let kind = if cfg!(target_arch = "wasm32") { wgpu::PollType::Poll } else { kind };
         // wgpu 30 panics if the device is lost during the wait (`handle_error_fatal` in `Device::poll`).
         let polled = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| self.device.poll(kind)));
         let reason = match polled {
@@ -284,6 +306,7 @@ impl Gpu {
     }
 }
 
+#[cfg(not(target_arch = "wasm32"))]
 fn open_device(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDeviceError> {
     pollster::block_on(adapter.request_device(&Gpu::descriptor(adapter)))
 }

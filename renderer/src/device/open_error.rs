@@ -39,6 +39,12 @@ pub enum OpenError {
         /// All adapters that were found.
         found: Vec<AdapterInfo>,
     },
+    /// wgpu found no adapter that fits the surface.
+    #[error("no adapter can be used: {reason}; install a driver, or enable a graphics API of wgpu")]
+    NoneFits {
+        /// Reason given by wgpu.
+        reason: String,
+    },
     /// Every suitable adapter failed to open a device.
     #[error("no adapter could open a device: {}", listed(.refusals.iter().map(|(info, why)| format!("{}: {why}", describe(info)))))]
     Refused {

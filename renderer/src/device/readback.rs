@@ -139,7 +139,7 @@ impl Readback {
         }
     }
 
-    /// Waits for the pixels.
+    /// Waits for the pixels. Browsers cannot wait: use [`Readback::try_take`] there.
     ///
     /// # Errors
     /// Fails if the device is lost or the buffer could not be mapped.

@@ -1,10 +1,11 @@
 //! Mutable state of recording: uniforms, counts and times of the steps that one thread records.
 
+use crate::clock::Instant;
 use crate::execute::error::RecordError;
 use crate::execute::request_cache::RequestCache;
 use crate::execute::uniforms::Uniforms;
 use framegraph::{Counts, PassId, StepId};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use wgpu::Device;
 
 /// State of one recording thread. Reused in every frame.

@@ -1,6 +1,7 @@
 //! Recording on several threads. Each thread records a part of the steps into its own command buffers. They are
 //! submitted in the order of the steps, so the result does not depend on the number of threads.
 
+use crate::clock::Instant;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::error::ExecuteError;
 use crate::execute::prepared::Prepared;
@@ -12,7 +13,6 @@ use crate::placed::arenas::Arenas;
 use crate::workers::Workers;
 use framegraph::{Placement, Plan, StepId, StoreOp, Usage};
 use std::ops::Range;
-use std::time::Instant;
 #[cfg(feature = "threads")]
 use wgpu::Device;
 use wgpu::{CommandBuffer, Queue};

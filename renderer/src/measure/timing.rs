@@ -6,6 +6,7 @@
 //! The first frames after the steps change compile shaders and are ignored. Timestamps that are zero or run backwards
 //! are dropped.
 
+use crate::clock::Instant;
 use crate::device::gpu::Gpu;
 use crate::execute::recording::{Recording, StepTime};
 use crate::hash::fnv;
@@ -13,7 +14,7 @@ use crate::measure::statistics::{Durations, Summary};
 use crate::measure::timestamp_queries::{FrameTimestamps, StepSpans};
 use crate::measure::trace::{Recorder, Trace};
 use framegraph::{PassKind, Plan, StepId};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use wgpu::{CommandEncoder, Features, QuerySet};
 
 /// Maximum number of frames with timestamps in flight.

@@ -1,12 +1,12 @@
 //! Traces: times of individual frames, exported in the Trace Event Format of Chrome and Perfetto.
 
+use crate::clock::Instant;
 use crate::execute::recording::StepTime;
 use crate::measure::timestamp_queries::StepSpans;
 use framegraph::{Counts, Join, Plan, StepPass, Traffic};
 use std::collections::VecDeque;
 use std::fmt::Write;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Maximum number of frames kept, more than `render --trace` draws.
 const KEPT: usize = 1 << 14;

@@ -1,6 +1,8 @@
 //! Detection of counting loops, and analysis of the statements of a block.
 
-use wgpu::naga::{BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, Module, Statement};
+use wgpu::naga::{
+    BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, Module, Range, Statement,
+};
 
 /// A loop that runs while a local variable is below a bound. Each iteration adds a constant to the variable at its end,
 /// and nothing else stores to it.
@@ -86,7 +88,7 @@ pub(super) fn whole(literal: Literal) -> Option<i64> {
 
 /// Returns whether a block itself evaluates an expression.
 fn is_emitted(block: &Block, value: Handle<Expression>) -> bool {
-    let emits = |range: &wgpu::naga::Range<Expression>| range.clone().any(|own| own == value);
+    let emits = |range: &Range<Expression>| range.clone().any(|own| own == value);
     block.iter().any(|statement| matches!(statement, Statement::Emit(range) if emits(range)))
 }
 

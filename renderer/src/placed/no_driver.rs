@@ -15,6 +15,7 @@ pub(crate) enum PlacedTexture {}
 
 /// A placed texture or buffer.
 #[derive(Debug)]
+#[expect(dead_code, reason = "nothing is placed")]
 pub(crate) enum Object {
     Texture(PlacedTexture),
     Buffer(Buffer),
