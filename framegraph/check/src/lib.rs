@@ -19,6 +19,8 @@
 //! # Ok::<(), framegraph::CompileErrors>(())
 //! ```
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod check;
 pub mod generate;
 pub mod mutation;
