@@ -177,7 +177,6 @@ pub use measure::trace::{FrameTimes, StepTimes, Trace};
 pub use named::Named;
 pub use pipelines::bind_groups::Binding;
 pub use pipelines::binding_error::{BindingError, BindingReason};
-pub use pipelines::bounds::unproved_index;
 pub use pipelines::loops::endless_loop;
 pub use pipelines::pipeline::{ComputePipeline, Group, Pipeline, RasterPipeline};
 pub use pipelines::samplers::SamplerDesc;

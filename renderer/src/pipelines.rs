@@ -2,7 +2,6 @@
 
 pub(crate) mod bind_groups;
 pub(crate) mod binding_error;
-pub(crate) mod bounds;
 pub(crate) mod cache;
 mod counting_loop;
 pub(crate) mod key;

@@ -8,7 +8,6 @@ use wgpu::naga::{
 /// and nothing else stores to it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CountingLoop {
-    pub(super) counter: Handle<LocalVariable>,
     pub(super) bound: Handle<Expression>,
     /// True if the loop also runs when the counter equals the bound.
     pub(super) equal: bool,
@@ -37,7 +36,7 @@ impl CountingLoop {
         let step = continuing.iter().find_map(|statement| step(module, function, counter, statement, continuing))?;
         // The counter must be stored once in the continuing block, and nowhere else.
         let stores = |block| changed(function, block).into_iter().filter(|variable| *variable == counter).count();
-        (stores(body) == 0 && stores(continuing) == 1).then_some(Self { counter, bound, equal, step })
+        (stores(body) == 0 && stores(continuing) == 1).then_some(Self { bound, equal, step })
     }
 }
 

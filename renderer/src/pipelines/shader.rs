@@ -3,7 +3,6 @@
 use crate::cache::Cache;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::hash::{FNV_START, fnv_append};
-use crate::pipelines::bounds::first_unproved;
 use crate::pipelines::loops::first_endless;
 use crate::pipelines::pipeline::Source;
 use std::borrow::Cow;
@@ -168,18 +167,15 @@ impl ShaderModules {
     }
 }
 
-/// Creates a shader module. Loop counters are omitted if all loops are proven to terminate, and index checks if all
-/// indices are proven to be in bounds.
-#[allow(unsafe_code, reason = "the promise that loops end and indices are in bounds needs an unsafe call")]
+/// Creates a shader module, without loop counters if all loops are proved to end.
+#[allow(unsafe_code, reason = "the promise that loops end needs an unsafe call")]
 fn create_module(device: &Device, descriptor: ShaderModuleDescriptor<'_>) -> ShaderModule {
     let ShaderSource::Naga(module) = &descriptor.source else { return device.create_shader_module(descriptor) };
-    let (force_loop_bounding, bounds_checks) = (first_endless(module).is_some(), first_unproved(module).is_some());
-    if force_loop_bounding && bounds_checks {
+    if first_endless(module).is_some() {
         return device.create_shader_module(descriptor);
     }
-    let checks = ShaderRuntimeChecks { force_loop_bounding, bounds_checks, ..ShaderRuntimeChecks::checked() };
-    // SAFETY: all checks stay on except two, each only if its condition was proven for the compiled module: all loops
-    // terminate, or all indices are in bounds.
+    let checks = ShaderRuntimeChecks { force_loop_bounding: false, ..ShaderRuntimeChecks::checked() };
+    // SAFETY: all checks stay on except loop counters, and all loops of this module were proved to end.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
 }
 
