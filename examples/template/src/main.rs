@@ -1,5 +1,4 @@
-//! A window with a render graph: one pass draws a scene, and an effect reads its picture. `effect.wgsl` is reloaded when
-//! it is saved.
+//! A window with a render graph: a scene, and an effect that reads its picture and is reloaded when it is saved.
 
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_wgpu::wgpu::{Instance, InstanceDescriptor};
