@@ -19,7 +19,8 @@ is not used. A test of this program checks manifests and lists of files.
 
   --build       also write a project outside of the workspace that depends on
                 the unpacked crates. Its programs are the first examples of the
-                READMEs, and each is built and run
+                READMEs, and each is built and run. A copy of examples/template
+                is built too, for which cargo may download crates
 
 Exit code 1 if a package is incomplete, or if an example fails.
 ",
@@ -98,6 +99,11 @@ fn build(root: &Path, all: &[Published], unpacked: &Path) -> Result<(), Failure>
         cargo.current_dir(&folder).env("CARGO_TARGET_DIR", root.join("target"));
         staged("outside", &mut cargo)?;
     }
-    program::line(format_args!("{} programs outside of the workspace ran", programs.len()));
+    let folder = workspace::scratch()?.join("outside-template");
+    outside::copy_template(root, all, unpacked, &folder).map_err(Failure::Failed)?;
+    // Its window toolkit has more features than the workspace uses, so cargo may download crates.
+    let mut cargo = workspace::cargo(&["build"]);
+    staged("template", cargo.current_dir(&folder).env("CARGO_TARGET_DIR", root.join("target")))?;
+    program::line(format_args!("{} programs outside of the workspace ran, and the template was built", programs.len()));
     Ok(())
 }

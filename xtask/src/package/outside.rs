@@ -1,4 +1,4 @@
-//! A project outside of the workspace, whose programs are the first examples of the READMEs.
+//! Projects outside of the workspace: one whose programs are the first examples of the READMEs, and a copy of the template.
 
 use super::published::Published;
 use std::fmt::Write as _;
@@ -42,6 +42,28 @@ pub fn write(root: &Path, all: &[Published], unpacked: &Path, folder: &Path) -> 
     Ok(names)
 }
 
+/// Copies the template into `folder` as `cargo generate` does, with dependencies on the packages in `unpacked`.
+///
+/// # Errors
+/// A file cannot be read or written.
+pub fn copy_template(root: &Path, all: &[Published], unpacked: &Path, folder: &Path) -> Result<(), String> {
+    let say = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
+    let source = folder.join("src");
+    fs::create_dir_all(&source).map_err(|error| say(&source, error))?;
+    let template = root.join("examples/template");
+    for file in ["main.rs", "scene.wgsl", "effect.wgsl"] {
+        let from = template.join("src").join(file);
+        fs::copy(&from, source.join(file)).map_err(|error| say(&from, error))?;
+    }
+    let [from, workspace, to] = [template.join("Cargo.toml"), root.join("Cargo.toml"), folder.join("Cargo.toml")];
+    let read = |path: &Path| fs::read_to_string(path).map_err(|error| say(path, error));
+    let manifest = read(&from)?.replace("{{project-name}}", "outside-template");
+    let text = manifest + "\n[workspace]\n" + &patches(all, unpacked, &read(&workspace)?);
+    fs::write(&to, text).map_err(|error| say(&to, error))?;
+    let (from, to) = (root.join("Cargo.lock"), folder.join("Cargo.lock"));
+    fs::copy(&from, to).map_err(|error| say(&from, error)).map(drop)
+}
+
 /// Returns the first Rust example of a document as a program.
 fn program(document: &str) -> Option<String> {
     let (_, after) = document.split_once("```rust\n")?;
@@ -54,14 +76,19 @@ fn program(document: &str) -> Option<String> {
 }
 
 /// Returns a manifest that names all packages by version, and takes them from the folder `unpacked`.
-///
-/// Profiles are those of the workspace, so that dependencies need not be built again.
 fn manifest(all: &[Published], unpacked: &Path, workspace: &str) -> String {
     let mut text = String::from("[package]\nname = \"outside\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\n");
     for Published { name, .. } in all {
         let _ = writeln!(text, "{name} = \"{}\"", env!("CARGO_PKG_VERSION"));
     }
-    text += "\n[patch.crates-io]\n";
+    text + &patches(all, unpacked, workspace)
+}
+
+/// Returns the part of a manifest that takes all packages from the folder `unpacked`.
+///
+/// Profiles are those of the workspace, so that dependencies need not be built again.
+fn patches(all: &[Published], unpacked: &Path, workspace: &str) -> String {
+    let mut text = String::from("\n[patch.crates-io]\n");
     for Published { name, .. } in all {
         let _ = writeln!(text, "{name} = {{ path = {:?} }}", unpacked.join(name_of_folder(name)));
     }
