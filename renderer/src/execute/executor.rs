@@ -161,7 +161,7 @@ impl Executor {
     /// # Errors
     /// Fails with [`ExecuteError`]. Nothing of the frame is submitted in that case, histories do not advance, and the
     /// next frame starts clean.
-    pub fn execute<W: ?Sized + Sync + 'static>(
+    pub fn execute<W: ?Sized>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
@@ -198,7 +198,7 @@ impl Executor {
     ///
     /// # Errors
     /// Fails like [`Executor::execute`]. If recording fails, `submit` is not called.
-    pub fn execute_with<W: ?Sized + Sync + 'static>(
+    pub fn execute_with<W: ?Sized>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
@@ -212,7 +212,7 @@ impl Executor {
 
     /// Executes a frame like [`Executor::execute_with`]. For inspections, the plan's graph may lack passes of the frame
     /// and have one additional pass.
-    pub(crate) fn run<W: ?Sized + Sync + 'static>(
+    pub(crate) fn run<W: ?Sized>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
@@ -253,7 +253,7 @@ impl Executor {
 
     /// Records a frame. `recorded` is called after each step with the number of pipelines created so far; with it, all
     /// steps are recorded on one thread.
-    fn record_frame<W: ?Sized + Sync + 'static>(
+    fn record_frame<W: ?Sized>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
@@ -270,7 +270,8 @@ impl Executor {
         self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
         self.executed = Counts::default();
         self.timing.begin_frame(&self.gpu, plan);
-        let timed = self.threads.begin_frame(plan, self.timing.plan(), self.options.max_age);
+        let may_split = passes.frame.share().is_some();
+        let timed = self.threads.begin_frame(plan, self.timing.plan(), may_split, self.options.max_age);
         self.recording.begin_frame(timed, self.options.max_age);
 
         let watch = self.recording.in_wgpu(|| self.gpu.watch("a frame"));
@@ -304,12 +305,7 @@ impl Executor {
 
     /// Records the frame again, pass by pass, to find the pass whose commands wgpu rejected. Submits nothing. Returns
     /// `None` if no single pass is at fault.
-    fn blame<W: ?Sized + Sync + 'static>(
-        &mut self,
-        plan: &Plan,
-        passes: &Passes<'_, W>,
-        imports: &Imports,
-    ) -> Option<ExecuteError> {
+    fn blame<W: ?Sized>(&mut self, plan: &Plan, passes: &Passes<'_, W>, imports: &Imports) -> Option<ExecuteError> {
         let scopes = ErrorScopes::open(&self.gpu.device);
         let prepared = self.prepare(plan, passes.frame.key(), imports);
         let refused = scopes.close("a texture").is_ok() && prepared.is_ok();
@@ -330,7 +326,7 @@ impl Executor {
     }
 
     /// Records all steps. Errors on other threads are stored in `elsewhere`.
-    fn record_steps<W: ?Sized + Sync + 'static>(
+    fn record_steps<W: ?Sized>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
@@ -368,7 +364,7 @@ impl Executor {
 }
 
 /// Checks that a plan belongs to a frame.
-fn check<W: ?Sized + 'static>(plan: &Plan, frame: &Frame<W>) -> Result<(), ExecuteError> {
+fn check<W: ?Sized>(plan: &Plan, frame: &Frame<W>) -> Result<(), ExecuteError> {
     if frame.graph().same_as(plan.graph()) { Ok(()) } else { Err(ExecuteError::OtherPlan) }
 }
 

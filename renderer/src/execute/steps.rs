@@ -27,7 +27,7 @@ pub(crate) struct Extra<'x> {
 }
 
 /// Recorders of the passes of a plan.
-pub(crate) struct Passes<'x, W: ?Sized + 'static> {
+pub(crate) struct Passes<'x, W: ?Sized> {
     pub(crate) frame: &'x Frame<W>,
     pub(crate) world: &'x W,
     pub(crate) extra: Option<Extra<'x>>,
@@ -37,7 +37,7 @@ pub(crate) struct Passes<'x, W: ?Sized + 'static> {
 ///
 /// # Errors
 /// Fails if an attachment or clear is not supported, or a recorder fails. The encoder must be dropped in that case.
-pub(crate) fn record_step<W: ?Sized + 'static>(
+pub(crate) fn record_step<W: ?Sized>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
     step: StepId,
@@ -48,7 +48,7 @@ pub(crate) fn record_step<W: ?Sized + 'static>(
 }
 
 /// Records the first passes of a step.
-pub(crate) fn record_members<W: ?Sized + 'static>(
+pub(crate) fn record_members<W: ?Sized>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
     (step, members): (StepId, &[StepPass]),
@@ -161,7 +161,7 @@ fn begin_raster(
     encoder.begin_render_pass(&descriptor).forget_lifetime()
 }
 
-fn record_pass<W: ?Sized + 'static>(
+fn record_pass<W: ?Sized>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
     (step, StepPass { pass, join }): (StepId, StepPass),
@@ -209,11 +209,7 @@ fn record_pass<W: ?Sized + 'static>(
 }
 
 /// Returns the inlined passes of the current pass with their epilogues.
-fn inlined_into<W: ?Sized + 'static>(
-    cx: &mut Cx<'_>,
-    declared: &Frame<W>,
-    world: &W,
-) -> Result<Vec<Inlined>, ExecuteError> {
+fn inlined_into<W: ?Sized>(cx: &mut Cx<'_>, declared: &Frame<W>, world: &W) -> Result<Vec<Inlined>, ExecuteError> {
     let (plan, producer) = (cx.frame.plan, cx.pass);
     let mut inlined = Vec::new();
     for (pass, slot) in inlined_after(plan, cx.step, producer) {

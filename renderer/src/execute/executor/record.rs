@@ -45,7 +45,7 @@ impl Executor {
     ///
     /// # Errors
     /// Fails like [`Executor::execute`].
-    pub fn record<W: ?Sized + Sync + 'static>(
+    pub fn record<W: ?Sized>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,

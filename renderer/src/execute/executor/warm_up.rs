@@ -53,7 +53,7 @@ impl Executor {
     ///
     /// # Errors
     /// Fails like [`Executor::execute`].
-    pub fn warm_up<W: ?Sized + Sync + 'static>(
+    pub fn warm_up<W: ?Sized>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
