@@ -23,6 +23,7 @@ mod poison;
 mod random;
 mod raster;
 mod refusals;
+mod reload;
 mod resolve;
 mod steady;
 mod submission;

@@ -83,9 +83,13 @@ impl Executor {
     /// `shader`. Returns the number of recompiled pipelines.
     ///
     /// # Errors
-    /// Fails if the new source does not compile or does not match one of the pipelines. The old source stays in use.
+    /// Fails if the new source does not compile, does not match one of the pipelines, or does not fit the recorders
+    /// ([`ShaderError::Reload`]): it lacks an entry point, or expects other bindings, vertex inputs or outputs than
+    /// `shader`. The old source stays in use.
     pub fn reload_shader(&mut self, shader: &Shader<'_>, text: &str) -> Result<usize, ShaderError> {
-        self.caches.pipelines.reload(&self.gpu.device, shader, text)
+        let Self { gpu, caches, .. } = self;
+        caches.groups.settle();
+        caches.pipelines.reload(&gpu.device, shader, text, &caches.groups)
     }
 
     /// Uses a driver pipeline cache from now on, so that later runs compile faster. `earlier` is the result of
