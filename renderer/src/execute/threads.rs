@@ -54,6 +54,11 @@ impl Threads {
         (self.workers, self.balancer) = (workers, ThreadBalancer::default());
     }
 
+    /// Turns time measurements of the other threads on or off.
+    pub(crate) fn set_measured(&mut self, measured: bool) {
+        self.others.iter_mut().for_each(|other| other.set_measured(measured));
+    }
+
     /// Splits all frames regardless of cost, for tests.
     #[cfg(all(feature = "threads", any(test, feature = "testing")))]
     pub(crate) fn always_split(&mut self) {
