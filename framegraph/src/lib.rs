@@ -71,6 +71,7 @@
 //! | --- | --- | --- |
 //! | `files` | yes | the module `file`, and serde for formats, descriptors, caps, options and counts; enables `petgraph` |
 //! | `petgraph` | yes | exports the graph as a `petgraph` graph (the module `dump::graph`) |
+//! | `tracing` | no | spans of the crate `tracing` for compilations and their phases, with counts and bytes |
 //! | `testing` | no | the plan checker, random graphs and mutations of plans, for tests |
 //!
 //! Without features, the crate depends only on the memory packer ([`pack`]) and on `triomphe`, an `Arc` without weak
@@ -104,6 +105,7 @@ pub mod plan;
 pub mod resolve;
 pub mod resource;
 pub mod sanitize;
+mod spans;
 #[cfg(feature = "testing")]
 pub mod testing;
 mod warning;

@@ -116,6 +116,7 @@
 //! | `noop` | [`Gpu::noop`], a device that validates all calls and draws nothing, for tests without a GPU | yes |
 //! | `threads` | `Workers`, which record the steps of a frame on several threads | no |
 //! | `files` | frames from graph files, with the feature of the same name in [`framegraph`] | no |
+//! | `tracing` | spans of the crate `tracing` for compilations, frames, steps and passes, with counts and bytes | no |
 //! | `testing` | module `mock` | no |
 
 mod cache;
@@ -137,6 +138,7 @@ mod placed;
 mod record;
 mod recorders;
 mod resources;
+mod spans;
 #[cfg(feature = "threads")]
 mod workers;
 #[cfg(not(feature = "threads"))]

@@ -32,6 +32,7 @@ use crate::resources::imports::Imports;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Limits, Pool};
 use crate::resources::realize::{Realized, Sources};
+use crate::spans::{executed, span};
 use framegraph::{Counts, Plan, ResourceId, StepId};
 use std::sync::atomic::AtomicBool;
 use wgpu::SubmissionIndex;
@@ -221,6 +222,7 @@ impl Executor {
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
         let commands = self.record_frame(plan, passes, imports, None)?;
+        let _span = span!("submit", command_buffers = commands.buffers());
         let begun = self.recording.now();
         let watch = self.gpu.watch("submitting a frame");
         self.upload();
@@ -261,6 +263,7 @@ impl Executor {
         imports: &Imports,
         recorded: Option<&mut dyn FnMut(StepId, u64)>,
     ) -> Result<FrameCommands, ExecuteError> {
+        let span = span!("frame"; steps, passes, loads, stores, loaded_bytes, stored_bytes);
         // The last submission has already polled the device, so polling is only needed to read times.
         if self.timing.is_enabled() {
             self.gpu.poll()?;
@@ -282,6 +285,7 @@ impl Executor {
         let begun = self.recording.now();
         let caught = watch.end(self.gpu.errors()).and(elsewhere);
         self.recording.took_in_wgpu(begun);
+        executed(&span, plan);
         match (ran, caught) {
             (ran, Ok(())) => ran,
             (Err(said), Err(error)) => {
@@ -319,6 +323,8 @@ impl Executor {
 
     /// Creates or reuses all textures and buffers of the frame.
     fn prepare(&mut self, plan: &Plan, owner: &FrameKey, imports: &Imports) -> Result<(), ExecuteError> {
+        let _span =
+            span!("realize", resources = plan.resources().len(), bytes = plan.memory().bytes + plan.memory().own_bytes);
         let Self { gpu, textures, buffers, histories, arenas, realized, options, touched, .. } = self;
         touched.clear();
         touched.resize_with(plan.graph().accesses().len(), AtomicBool::default);

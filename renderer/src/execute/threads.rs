@@ -9,6 +9,7 @@ use crate::execute::segments::Segments;
 use crate::execute::steps::{Passes, record_step};
 use crate::execute::thread_balancer::ThreadBalancer;
 use crate::placed::arenas::Arenas;
+use crate::spans::{here, span};
 use crate::workers::{Job, Workers};
 use framegraph::{Placement, Plan, StepId, StoreOp, Usage};
 use std::ops::Range;
@@ -141,7 +142,9 @@ impl Threads {
             })
             .collect();
         *recorded = parts.len();
+        let parent = here();
         let record = |part: &mut Part<'_>, world: &W| {
+            let _span = span!("part" in &parent);
             let passes = &Passes { frame: declared, world, extra };
             let begun = part.recording.now();
             let scopes = ErrorScopes::open(&frame.gpu.device);
