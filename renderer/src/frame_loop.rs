@@ -10,7 +10,7 @@ use crate::placed::not_placed::NotPlaced;
 use crate::resources::imports::Imports;
 use framegraph::{Alias, CompileErrors, DeclareError, Options, Plan, Scratch, Warning};
 use std::fmt;
-use wgpu::SubmissionIndex;
+use wgpu::{CommandEncoder, SubmissionIndex};
 
 /// Declares, compiles and executes one frame after the other.
 ///
@@ -223,7 +223,29 @@ impl<W: ?Sized> FrameLoop<W> {
         Ok(Some((io, self.executor.record(&self.plan, &self.frame, world, &self.imports)?)))
     }
 
-    /// Reports that the commands last returned by [`FrameLoop::record`] were submitted with the index `submission`.
+    /// Runs a frame like [`FrameLoop::run`], but records its commands into the caller's encoder
+    /// ([`Executor::record_into`]). The caller submits it and then calls [`FrameLoop::submitted`].
+    ///
+    /// # Errors
+    /// Fails like [`FrameLoop::run`]. After an error, the encoder must be dropped.
+    pub fn record_into<T, E>(
+        &mut self,
+        size: [u32; 2],
+        world: &W,
+        encoder: &mut CommandEncoder,
+        declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
+    ) -> Result<Option<T>, FrameError<E>> {
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        self.flight.begin().map_err(ExecuteError::Device)?;
+        let Some(io) = self.declare(size, declare)? else { return Ok(None) };
+        self.executor.record_into(&self.plan, &self.frame, world, &self.imports, encoder)?;
+        Ok(Some(io))
+    }
+
+    /// Reports that the commands of [`FrameLoop::record`] or [`FrameLoop::record_into`] were submitted with the index
+    /// `submission`.
     pub fn submitted(&mut self, submission: SubmissionIndex) {
         self.executor.submitted();
         self.flight.submitted(submission);

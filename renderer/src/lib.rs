@@ -165,6 +165,7 @@ pub use execute::error::{EffectSetting, ExecuteError, MemoryRequest, PassReason,
 pub use execute::executor::{Allocated, Executor, ExecutorOptions, UnusedAccess, WarmUpProgress};
 pub use execute::object_counts::ObjectCounts;
 pub use execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};
+pub use execute::split_draws::SplitDraws;
 pub use execute::targets::Targets;
 #[doc(inline)]
 pub use frame::Frame;

@@ -1,7 +1,7 @@
 //! Replacement for the worker threads when the feature `threads` is off.
 
 /// Uninhabited type: without the feature `threads` no executor has workers.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Workers {}
 
 impl Workers {

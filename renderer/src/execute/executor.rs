@@ -16,12 +16,12 @@ pub use warm_up::WarmUpProgress;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
 use crate::execute::blame::{not_submitted, refused_pass};
-use crate::execute::commands::FrameCommands;
+use crate::execute::commands::{Destination, FrameCommands};
 use crate::execute::error::{ExecuteError, MemoryRequest, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
 use crate::execute::steps::Passes;
-use crate::execute::threads::{Threads, record_part};
+use crate::execute::threads::{Threads, record_into, record_part};
 use crate::frame::Frame;
 use crate::frame_key::FrameKey;
 use crate::measure::timing::Timing;
@@ -33,7 +33,7 @@ use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Limits, Pool};
 use crate::resources::realize::{Realized, Sources};
 use crate::spans::{executed, span};
-use framegraph::{Counts, Plan, ResourceId, StepId};
+use framegraph::{Counts, Plan, ResourceId};
 use std::sync::atomic::AtomicBool;
 use wgpu::SubmissionIndex;
 
@@ -221,7 +221,7 @@ impl Executor {
         imports: &Imports,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
-        let commands = self.record_frame(plan, passes, imports, None)?;
+        let commands = self.record_frame(plan, passes, imports, Destination::Own)?;
         let _span = span!("submit", command_buffers = commands.buffers());
         let begun = self.recording.now();
         let watch = self.gpu.watch("submitting a frame");
@@ -254,14 +254,13 @@ impl Executor {
         self.drop_unused();
     }
 
-    /// Records a frame. `recorded` is called after each step with the number of pipelines created so far; with it, all
-    /// steps are recorded on one thread.
+    /// Records a frame into `to`. The result has no command buffers if that is the caller's encoder.
     fn record_frame<W: ?Sized>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
         imports: &Imports,
-        recorded: Option<&mut dyn FnMut(StepId, u64)>,
+        to: Destination<'_>,
     ) -> Result<FrameCommands, ExecuteError> {
         let span = span!("frame"; steps, passes, loads, stores, loaded_bytes, stored_bytes);
         // The last submission has already polled the device, so polling is only needed to read times.
@@ -281,7 +280,7 @@ impl Executor {
         let watch = self.recording.in_wgpu(|| self.gpu.watch("a frame"));
         let mut elsewhere = Ok(());
         let prepared = self.prepare(plan, passes.frame.key(), imports);
-        let ran = prepared.and_then(|()| self.record_steps(plan, passes, recorded, &mut elsewhere));
+        let ran = prepared.and_then(|()| self.record_steps(plan, passes, to, &mut elsewhere));
         let begun = self.recording.now();
         let caught = watch.end(self.gpu.errors()).and(elsewhere);
         self.recording.took_in_wgpu(begun);
@@ -314,8 +313,10 @@ impl Executor {
         let scopes = ErrorScopes::open(&self.gpu.device);
         let prepared = self.prepare(plan, passes.frame.key(), imports);
         let refused = scopes.close("a texture").is_ok() && prepared.is_ok();
-        let Self { gpu, caches, realized, timing, touched, options, recording, .. } = self;
-        let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
+        let Self { gpu, caches, realized, timing, touched, options, recording, threads, .. } = self;
+        let workers = threads.workers().cloned();
+        let (workers, poison) = (workers.as_ref(), options.poison);
+        let frame = &Prepared { gpu, plan, realized, caches, timing, workers, touched, poison };
         let blamed = refused.then(|| refused_pass(frame, passes, recording)).flatten();
         self.discard_frame();
         blamed.map(|(pass, message)| ExecuteError::Refused { pass: Named::pass(plan, pass), message })
@@ -337,20 +338,27 @@ impl Executor {
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
-        recorded: Option<&mut dyn FnMut(StepId, u64)>,
+        to: Destination<'_>,
         elsewhere: &mut Result<(), DeviceError>,
     ) -> Result<FrameCommands, ExecuteError> {
         let Self { gpu, caches, arenas, realized, timing, touched, options, recording, threads, executed, .. } = self;
-        let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
+        let workers = threads.workers().cloned();
+        let (workers, poison) = (workers.as_ref(), options.poison);
+        let frame = &Prepared { gpu, plan, realized, caches, timing, workers, touched, poison };
         let arenas = &*arenas;
-        let alone = recorded.is_some();
-        let shared = if alone { None } else { threads.record(frame, arenas, passes, recording, elsewhere) };
         let all = 0..plan.steps().len() as u32;
-        let commands = shared.unwrap_or_else(|| record_part(frame, arenas, passes, all, recording, recorded));
+        let commands = match to {
+            Destination::Own => {
+                let split = threads.record(frame, arenas, passes, recording, elsewhere);
+                let commands = split.unwrap_or_else(|| record_part(frame, arenas, passes, all, recording, None));
+                threads.end_frame(recording);
+                commands
+            }
+            Destination::Stepwise(each) => record_part(frame, arenas, passes, all, recording, Some(each)),
+            Destination::Encoder(_) if arenas.current().is_some() => Err(ExecuteError::SharedMemory),
+            Destination::Encoder(encoder) => record_into(frame, passes, recording, encoder).map(|()| Vec::new()),
+        };
         let commands = commands.map(|buffers| FrameCommands::new(buffers, arenas.submits_separately(gpu)));
-        if !alone {
-            threads.end_frame(recording);
-        }
         *executed = recording.executed;
         executed.memoryless = realized.memoryless();
         let commands = commands?;

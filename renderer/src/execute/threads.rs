@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::time::Instant;
 #[cfg(feature = "threads")]
 use wgpu::Device;
-use wgpu::{CommandBuffer, Queue};
+use wgpu::{CommandBuffer, CommandEncoder, Queue};
 
 /// State of multithreaded recording.
 #[derive(Debug, Default)]
@@ -41,7 +41,6 @@ struct Part<'a> {
 }
 
 impl Threads {
-    #[cfg(feature = "threads")]
     pub(crate) fn workers(&self) -> Option<&Workers> {
         self.workers.as_ref()
     }
@@ -237,4 +236,16 @@ pub(crate) fn record_part<W: ?Sized>(
         }
         segments.finish()
     }))
+}
+
+/// Records all steps on this thread, into an encoder of the caller.
+pub(crate) fn record_into<W: ?Sized>(
+    frame: &Prepared<'_>,
+    passes: &Passes<'_, W>,
+    recording: &mut Recording,
+    encoder: &mut CommandEncoder,
+) -> Result<(), ExecuteError> {
+    frame.plan.step_ids().try_for_each(|step| record_step(frame, passes, step, recording, encoder))?;
+    recording.in_wgpu(|| frame.timing.resolve(encoder));
+    Ok(())
 }

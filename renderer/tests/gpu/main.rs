@@ -25,6 +25,7 @@ mod raster;
 mod refusals;
 mod reload;
 mod resolve;
+mod split_draws;
 mod steady;
 mod submission;
 mod threads;

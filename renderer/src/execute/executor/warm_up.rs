@@ -2,6 +2,7 @@
 
 use super::{Executor, check};
 use crate::device::pipeline_cache::{PipelineCacheError, cache_bytes, open_cache};
+use crate::execute::commands::Destination;
 use crate::execute::error::ExecuteError;
 use crate::execute::steps::Passes;
 use crate::frame::Frame;
@@ -68,7 +69,7 @@ impl Executor {
             plan,
             &Passes { frame, world, extra: None },
             imports,
-            Some(&mut |step, pipelines| {
+            Destination::Stepwise(&mut |step, pipelines| {
                 done += 1;
                 let pass = plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass));
                 progress(WarmUpProgress { done, total, pass, pipelines: pipelines - before });
