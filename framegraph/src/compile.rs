@@ -41,6 +41,7 @@ use crate::graph::{Graph, Tables};
 use crate::id::{PassId, ResourceId};
 use crate::options::{Options, Order};
 use crate::plan::{Memory, Plan};
+use crate::spans::{compiled, span};
 use cull::Culled;
 pub use phases::Scratch;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -89,19 +90,20 @@ fn compile_keeping(
     scratch: &mut Scratch,
     plan: &mut Plan,
 ) -> Result<(), CompileErrors> {
+    let span = span!("compile", passes = graph.passes().len(), resources = graph.resources().len(); steps, culled, loads, stores, bytes, barriers);
     plan.begin(graph, caps, options);
     let refused =
         |e: &DeclareError| CompileError::new(graph, CompileReason::Declare(e.clone()), PassId::NONE, ResourceId::NONE);
     let mut errors = CompileErrors::default();
     graph.errors.iter().for_each(|e| errors.push(|| refused(e)));
     let measures = &mut scratch.measures;
-    measure::measure(graph, caps, options.frame, measures, &mut errors);
+    span!("measure" => measure::measure(graph, caps, options.frame, measures, &mut errors));
     // Subresources have no numbers if there are too many of them.
     let too_many = |e: &CompileError| matches!(e.reason, CompileReason::Shape(ShapeReason::TooManySubresources { .. }));
     if errors.more == 0 && !errors.listed.iter().any(too_many) {
         let Scratch { measures, parts, defined, .. } = scratch;
         parts.number(graph, measures);
-        validate::validate(graph, caps, parts, measures, defined, &mut errors);
+        span!("validate" => validate::validate(graph, caps, parts, measures, defined, &mut errors));
     }
     if let Err(errors) = errors.or(()) {
         // Restores the invariant that an empty plan belongs to an empty graph.
@@ -110,7 +112,7 @@ fn compile_keeping(
     }
     let Scratch { measures, parts, order, after, needs, dropped, trimmed, .. } = scratch;
     let culled = Culled { order, after, needs, dropped };
-    cull::cull(graph, parts, measures, options.cull, culled, &mut plan.decisions);
+    span!("cull" => cull::cull(graph, parts, measures, options.cull, culled, &mut plan.decisions));
     if dropped.is_empty() {
         ordered(graph, caps, options, scratch, plan);
     } else {
@@ -120,6 +122,7 @@ fn compile_keeping(
         scratch.trimmed = trimmed;
     }
     plan.number();
+    compiled(&span, plan);
     Ok(())
 }
 
@@ -129,7 +132,7 @@ fn ordered(graph: &Tables, caps: &Caps, options: &Options, scratch: &mut Scratch
         Order::Declared => {
             phases::plan_order(graph, caps, options, None, scratch, plan);
         }
-        Order::Optimized => order::optimized(graph, caps, options, scratch, plan),
+        Order::Optimized => span!("order" => order::optimized(graph, caps, options, scratch, plan)),
     }
 }
 

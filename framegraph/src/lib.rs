@@ -71,6 +71,7 @@
 //! | `files` | yes | the module `file`, and serde for formats, descriptors, caps, options and counts; enables `petgraph` |
 //! | `petgraph` | yes | exports the graph as a `petgraph` graph (the module `dump::graph`) |
 //! | `internals` | no | write access to plans, for the plan checker `framegraph-check`; not stable |
+//! | `tracing` | no | spans of the crate `tracing` for compilations and their phases, with counts and bytes |
 //!
 //! Without features, the crate depends only on the memory packer ([`pack`]) and on `triomphe`, an `Arc` without weak
 //! counts.
@@ -117,6 +118,7 @@ pub mod plan;
 pub mod resolve;
 pub mod resource;
 pub mod sanitize;
+mod spans;
 mod warning;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};

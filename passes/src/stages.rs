@@ -48,13 +48,13 @@ use std::fmt;
 type Declare<W> = dyn Fn(&mut Frame<W>, &mut Handles) -> Result<(), StageError> + Send + Sync;
 
 /// Named group of passes that are declared together.
-pub struct Stage<W: ?Sized + 'static> {
+pub struct Stage<W: ?Sized> {
     name: &'static str,
     picture: bool,
     declare: Box<Declare<W>>,
 }
 
-impl<W: ?Sized + 'static> Stage<W> {
+impl<W: ?Sized> Stage<W> {
     /// Creates a stage. `declare` takes textures from the handles, adds passes to the frame, and sets the textures it
     /// wrote.
     pub fn new(
@@ -73,7 +73,7 @@ impl<W: ?Sized + 'static> Stage<W> {
     }
 }
 
-impl<W: ?Sized + 'static> fmt::Debug for Stage<W> {
+impl<W: ?Sized> fmt::Debug for Stage<W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, picture, .. } = self;
         f.debug_struct("Stage").field("name", name).field("picture", picture).finish_non_exhaustive()
@@ -82,16 +82,16 @@ impl<W: ?Sized + 'static> fmt::Debug for Stage<W> {
 
 /// Stages of a frame, in order. Can be declared repeatedly, in several frames and for several views.
 #[derive(Debug)]
-pub struct Stages<W: ?Sized + 'static>(Vec<Stage<W>>);
+pub struct Stages<W: ?Sized>(Vec<Stage<W>>);
 
-impl<W: ?Sized + 'static> Default for Stages<W> {
+impl<W: ?Sized> Default for Stages<W> {
     /// Creates an empty list.
     fn default() -> Self {
         Self(Vec::new())
     }
 }
 
-impl<W: ?Sized + 'static> Stages<W> {
+impl<W: ?Sized> Stages<W> {
     /// Creates a list of stages with distinct names.
     pub(crate) fn of(stages: impl IntoIterator<Item = Stage<W>>) -> Self {
         Self(stages.into_iter().collect())

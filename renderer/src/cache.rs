@@ -163,7 +163,12 @@ impl<K, V: Clone> Cache<K, V> {
         self.retain_entries(|entry| stays(&entry.key));
     }
 
-    /// Creates a replacement with `make` for every object whose description `is` accepts. Pass the result to
+    /// Returns the descriptions of all objects, without those created since [`Cache::merge_fresh`].
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &K> {
+        self.known.values().flatten().map(|entry| &entry.key)
+    }
+
+    /// Creates a replacement with `make` for every object whose description `is` accepts. `make` also gets the object. Pass the result to
     /// [`Cache::replace`].
     ///
     /// # Errors
@@ -171,13 +176,13 @@ impl<K, V: Clone> Cache<K, V> {
     pub(crate) fn rebuild<E>(
         &mut self,
         is: impl Fn(&K) -> bool,
-        make: impl Fn(&K) -> Result<V, E>,
+        make: impl Fn(&K, &V) -> Result<V, E>,
     ) -> Result<Vec<(u64, usize, V)>, E> {
         self.merge_fresh();
         let hashes: BTreeSet<u64> = self.known.keys().copied().collect();
         let entries = hashes.iter().flat_map(|hash| self.known[hash].iter().enumerate().map(move |e| (*hash, e)));
         let meant = entries.filter(|(_, (_, entry))| is(&entry.key));
-        meant.map(|(hash, (index, entry))| Ok((hash, index, make(&entry.key)?))).collect()
+        meant.map(|(hash, (index, entry))| Ok((hash, index, make(&entry.key, &entry.value)?))).collect()
     }
 
     /// Replaces objects with the results of [`Cache::rebuild`].
@@ -197,7 +202,7 @@ impl<K, V: Clone> Cache<K, V> {
     }
 
     /// Moves the objects created in the last frame to the main table.
-    fn merge_fresh(&mut self) {
+    pub(crate) fn merge_fresh(&mut self) {
         let Self { known, fresh, .. } = self;
         let fresh = fresh.get_mut().unwrap_or_else(PoisonError::into_inner);
         fresh.drain().for_each(|(hash, entries)| known.entry(hash).or_default().extend(entries));
@@ -266,7 +271,7 @@ mod tests {
         }
         assert_eq!(get(&cache, "a"), 2, "the other was not requested");
         let rebuilt =
-            cache.rebuild(|word| word == "b", |_| Ok::<_, Infallible>(9)).unwrap_or_else(|never| match never {});
+            cache.rebuild(|word| word == "b", |_, _| Ok::<_, Infallible>(9)).unwrap_or_else(|never| match never {});
         cache.replace(rebuilt);
         assert_eq!(get_repeated(&cache, &mut last, "b"), (9, true), "replaced");
         cache.clear();

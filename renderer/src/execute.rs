@@ -20,6 +20,7 @@ pub(crate) mod prepared;
 pub(crate) mod recording;
 pub(crate) mod request_cache;
 pub(crate) mod segments;
+pub(crate) mod split_draws;
 pub(crate) mod steps;
 pub(crate) mod targets;
 pub(crate) mod thread_balancer;

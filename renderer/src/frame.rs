@@ -6,13 +6,14 @@
 //!
 //! Per-frame data such as the camera, draw lists and the scene on the GPU is not stored in the frame. The caller passes
 //! it to `execute` as a value of type `W`, the *world*, and recorders receive a reference to it. Passes therefore hold
-//! only handles and settings, and borrow nothing.
+//! only handles and settings, and borrow nothing. The world may borrow ([`Frame::for_world`]).
 
 use crate::execute::cx::Cx;
 use crate::execute::error::RecordError;
 use crate::frame_key::FrameKey;
 use crate::record::Record;
 use crate::recorders::{ClosureRecorder, PassRecorder, Recorders};
+use crate::workers::{ShareWorld, share_world};
 use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 
 /// A declared graph with a recorder for each pass. See the [module documentation](self).
@@ -44,19 +45,21 @@ use framegraph::{DeclareError, Graph, PassBuilder, PassId};
 /// assert!(frame.graph().find_pass("outline/mask").is_some());
 /// # Ok::<(), framegraph::DeclareError>(())
 /// ```
-pub struct Frame<W: ?Sized + 'static = ()> {
+pub struct Frame<W: ?Sized = ()> {
     graph: Graph,
     recorders: Recorders<W>,
     key: FrameKey,
+    /// Gives worker threads access to the world; `None` if the frame is recorded on one thread.
+    share: Option<ShareWorld<W>>,
 }
 
-impl<W: ?Sized + 'static> Default for Frame<W> {
+impl<W: ?Sized> Default for Frame<W> {
     fn default() -> Self {
         Self::from_graph(Graph::new())
     }
 }
 
-impl<W: ?Sized + 'static> Frame<W> {
+impl<W: ?Sized> Frame<W> {
     /// Creates an empty frame.
     pub fn new() -> Self {
         Self::default()
@@ -65,11 +68,63 @@ impl<W: ?Sized + 'static> Frame<W> {
     /// Creates a frame from a graph that was declared elsewhere, for example read from a file. Its passes have no
     /// recorders yet.
     pub fn from_graph(graph: Graph) -> Self {
-        Self { graph, recorders: Recorders::default(), key: FrameKey::new() }
+        Self { graph, recorders: Recorders::default(), key: FrameKey::new(), share: None }
     }
 
     pub(crate) fn key(&self) -> &FrameKey {
         &self.key
+    }
+
+    pub(crate) fn share(&self) -> Option<ShareWorld<W>> {
+        self.share
+    }
+
+    /// Lets executors record this frame on their worker threads, if they have any. Without this call, the frame is
+    /// recorded on the calling thread, and the world need not be `Sync`.
+    pub fn allow_threads(&mut self)
+    where
+        W: Sync,
+    {
+        self.share = Some(share_world);
+    }
+
+    /// Resets the frame for a world of another type, and keeps its memory and histories.
+    ///
+    /// A world that borrows has a lifetime in its type, so it cannot outlive the data that it borrows. Keep a
+    /// `Frame<()>` between frames, and convert it for each world:
+    ///
+    /// ```
+    /// use framegraph::{ClearValue, Extent, Format, Intent, Options, Plan, Scratch, TextureDesc, recompile};
+    /// use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
+    ///
+    /// struct World<'a> {
+    ///     stencil: &'a u32,
+    /// }
+    ///
+    /// let gpu = Gpu::noop()?;
+    /// let (mut executor, mut plan, mut scratch) = (Executor::new(&gpu), Plan::new(), Scratch::new());
+    /// let (mut kept, mut stencil) = (Frame::new(), 0);
+    /// for _ in 0..3 {
+    ///     stencil += 1;
+    ///     let world = World { stencil: &stencil };
+    ///     let mut frame: Frame<World<'_>> = kept.for_world();
+    ///     let mask = frame.graph_mut().texture("mask", TextureDesc::new(Extent::FRAME, Format::Depth24PlusStencil8));
+    ///     let clear = Intent::Clear(ClearValue::DepthStencil(0.0, 0));
+    ///     let mask = frame.add_fn("mask", |pass| pass.depth(mask, clear), |_, world: &World<'_>, cx| {
+    ///         cx.render_pass()?.set_stencil_reference(*world.stencil);
+    ///         Ok(())
+    ///     })?;
+    ///     frame.graph_mut().export(mask)?;
+    ///     recompile(frame.graph(), &gpu.caps(), &Options::for_frame(8, 8), &mut scratch, &mut plan)?;
+    ///     executor.execute(&plan, &frame, &world, &Imports::new())?;
+    ///     kept = frame.for_world::<()>();
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn for_world<V: ?Sized>(self) -> Frame<V> {
+        let Self { mut graph, recorders, key, .. } = self;
+        graph.reset();
+        Frame { graph, recorders: recorders.for_world(), key, share: None }
     }
 
     /// Sets or replaces the recorder of a pass.
@@ -165,13 +220,13 @@ impl<W: ?Sized + 'static> Frame<W> {
 /// Graph files can be declared into a frame as into a graph. Passes from a file have no recorder; add one with
 /// [`Frame::set_recorder`]. File plugins written for frames add their recorders themselves ([`Frame::add`]).
 #[cfg(feature = "files")]
-impl<W: ?Sized + 'static> framegraph::file::Host for Frame<W> {
+impl<W: ?Sized> framegraph::file::Host for Frame<W> {
     fn graph(&mut self) -> &mut Graph {
         &mut self.graph
     }
 }
 
-impl<W: ?Sized + 'static> std::fmt::Debug for Frame<W> {
+impl<W: ?Sized> std::fmt::Debug for Frame<W> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Frame").field("graph", &self.graph).finish_non_exhaustive()
     }

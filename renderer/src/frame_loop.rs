@@ -10,7 +10,7 @@ use crate::placed::not_placed::NotPlaced;
 use crate::resources::imports::Imports;
 use framegraph::{Alias, CompileErrors, DeclareError, Options, Plan, Scratch, Warning};
 use std::fmt;
-use wgpu::SubmissionIndex;
+use wgpu::{CommandEncoder, SubmissionIndex};
 
 /// Declares, compiles and executes one frame after the other.
 ///
@@ -38,8 +38,10 @@ use wgpu::SubmissionIndex;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct FrameLoop<W: ?Sized + 'static = ()> {
+pub struct FrameLoop<W: ?Sized = ()> {
     frame: Frame<W>,
+    /// Frame for worlds of other types, between two uses ([`FrameLoop::run_for`]).
+    other: Option<Frame<()>>,
     plan: Plan,
     scratch: Scratch,
     options: Options,
@@ -86,7 +88,7 @@ where
     }
 }
 
-impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
+impl<W: ?Sized> FrameLoop<W> {
     /// Creates a frame loop with the default compiler and executor options.
     pub fn new(gpu: &Gpu) -> Self {
         Self::with(gpu, Options::default(), ExecutorOptions::default())
@@ -96,6 +98,7 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
     pub fn with(gpu: &Gpu, options: Options, executor: ExecutorOptions) -> Self {
         Self {
             frame: Frame::new(),
+            other: None,
             plan: Plan::new(),
             scratch: Scratch::new(),
             options,
@@ -134,16 +137,69 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<Option<FrameOutput<T>>, FrameError<E>> {
-        if size.contains(&0) {
-            return Ok(None);
-        }
-        self.flight.begin().map_err(ExecuteError::Device)?;
-        let Some(io) = self.declare(size, declare)? else { return Ok(None) };
-        let submission = self.executor.execute_with(&self.plan, &self.frame, world, &self.imports, submit)?;
-        self.flight.submitted(submission.clone());
-        let requested = self.options.alias == Alias::Heap;
-        let not_placed = self.executor.not_placed().filter(|_| requested).cloned();
-        Ok(Some(FrameOutput { io, submission, not_placed }))
+        let Self { frame, plan, scratch, options, imports, executor, flight, .. } = self;
+        let mut parts = Parts { plan, scratch, options, imports, executor, flight };
+        parts.run(frame, size, world, declare, submit)
+    }
+
+    /// Runs a frame like [`FrameLoop::run`], with a world of another type that may live for this call only. Use it for
+    /// worlds that borrow data which changes between frames.
+    ///
+    /// These frames have histories of their own, and [`FrameLoop::frame`] does not return them.
+    ///
+    /// ```
+    /// use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, TextureDesc};
+    /// use framegraph_wgpu::{Frame, FrameLoop, Gpu};
+    ///
+    /// struct World<'a> {
+    ///     names: &'a [String],
+    /// }
+    ///
+    /// let mut frames = FrameLoop::<()>::new(&Gpu::noop()?);
+    /// let mut names = Vec::new();
+    /// for number in 0..3 {
+    ///     names.push(format!("object {number}"));
+    ///     let world = World { names: &names };
+    ///     frames.run_for([64, 36], &world, |frame: &mut Frame<World<'_>>, _| {
+    ///         let sky = frame.graph_mut().texture("sky", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    ///         let clear = Intent::Clear(ClearValue::BLACK);
+    ///         let sky = frame.add_fn("clear", |pass| pass.color(sky, clear), |_, world: &World<'_>, cx| {
+    ///             cx.render_pass()?.insert_debug_marker(&world.names[0]);
+    ///             Ok(())
+    ///         })?;
+    ///         frame.graph_mut().readback(sky)?;
+    ///         Ok::<_, DeclareError>(())
+    ///     })?;
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Fails like [`FrameLoop::run`].
+    pub fn run_for<V: ?Sized, T, E>(
+        &mut self,
+        size: [u32; 2],
+        world: &V,
+        declare: impl FnOnce(&mut Frame<V>, &mut Imports) -> Result<T, E>,
+    ) -> Result<Option<FrameOutput<T>>, FrameError<E>> {
+        let Self { other, plan, scratch, options, imports, executor, flight, .. } = self;
+        let queue = executor.gpu().queue.clone();
+        let mut frame = other.take().unwrap_or_default().for_world();
+        let mut parts = Parts { plan, scratch, options, imports, executor, flight };
+        let output = parts.run(&mut frame, size, world, declare, |commands| commands.submit(&queue, [], []));
+        *other = Some(frame.for_world());
+        output
+    }
+
+    /// Sets the threads to record on ([`Executor::record_on`]), for worlds that threads can share. `None` records on
+    /// the calling thread only.
+    #[cfg(feature = "threads")]
+    pub fn record_on(&mut self, workers: Option<crate::workers::Workers>)
+    where
+        W: Sync,
+    {
+        self.frame.allow_threads();
+        self.executor.record_on(workers);
     }
 
     /// Runs a frame like [`FrameLoop::run`], but returns its commands instead of submitting them.
@@ -167,7 +223,29 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         Ok(Some((io, self.executor.record(&self.plan, &self.frame, world, &self.imports)?)))
     }
 
-    /// Reports that the commands last returned by [`FrameLoop::record`] were submitted with the index `submission`.
+    /// Runs a frame like [`FrameLoop::run`], but records its commands into the caller's encoder
+    /// ([`Executor::record_into`]). The caller submits it and then calls [`FrameLoop::submitted`].
+    ///
+    /// # Errors
+    /// Fails like [`FrameLoop::run`]. After an error, the encoder must be dropped.
+    pub fn record_into<T, E>(
+        &mut self,
+        size: [u32; 2],
+        world: &W,
+        encoder: &mut CommandEncoder,
+        declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
+    ) -> Result<Option<T>, FrameError<E>> {
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        self.flight.begin().map_err(ExecuteError::Device)?;
+        let Some(io) = self.declare(size, declare)? else { return Ok(None) };
+        self.executor.record_into(&self.plan, &self.frame, world, &self.imports, encoder)?;
+        Ok(Some(io))
+    }
+
+    /// Reports that the commands of [`FrameLoop::record`] or [`FrameLoop::record_into`] were submitted with the index
+    /// `submission`.
     pub fn submitted(&mut self, submission: SubmissionIndex) {
         self.executor.submitted();
         self.flight.submitted(submission);
@@ -183,15 +261,8 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
         size: [u32; 2],
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
     ) -> Result<Option<T>, FrameError<E>> {
-        if size.contains(&0) {
-            return Ok(None);
-        }
-        self.frame.reset();
-        self.imports.clear();
-        let io = declare(&mut self.frame, &mut self.imports).map_err(FrameError::Declare)?;
-        self.options.frame = size;
-        self.executor.compile(self.frame.graph(), &self.options, &mut self.scratch, &mut self.plan)?;
-        self.plan.warnings().next().map_or(Ok(Some(io)), |warning| Err(FrameError::Idle(warning)))
+        let Self { frame, plan, scratch, options, imports, executor, flight, .. } = self;
+        Parts { plan, scratch, options, imports, executor, flight }.declare(frame, size, declare)
     }
 
     /// Creates the textures and pipelines of the last declared frame ahead of its execution ([`Executor::warm_up`]).
@@ -240,5 +311,54 @@ impl<W: ?Sized + Sync + 'static> FrameLoop<W> {
     /// Returns the executor mutably, to reset histories, trim pools or reload shaders.
     pub fn executor_mut(&mut self) -> &mut Executor {
         &mut self.executor
+    }
+}
+
+/// Parts of a frame loop that do not depend on the type of the world.
+struct Parts<'l> {
+    plan: &'l mut Plan,
+    scratch: &'l mut Scratch,
+    options: &'l mut Options,
+    imports: &'l mut Imports,
+    executor: &'l mut Executor,
+    flight: &'l mut FramesInFlight,
+}
+
+impl Parts<'_> {
+    fn declare<W: ?Sized, T, E>(
+        &mut self,
+        frame: &mut Frame<W>,
+        size: [u32; 2],
+        declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
+    ) -> Result<Option<T>, FrameError<E>> {
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        frame.reset();
+        self.imports.clear();
+        let io = declare(frame, self.imports).map_err(FrameError::Declare)?;
+        self.options.frame = size;
+        self.executor.compile(frame.graph(), self.options, self.scratch, self.plan)?;
+        self.plan.warnings().next().map_or(Ok(Some(io)), |warning| Err(FrameError::Idle(warning)))
+    }
+
+    fn run<W: ?Sized, T, E>(
+        &mut self,
+        frame: &mut Frame<W>,
+        size: [u32; 2],
+        world: &W,
+        declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
+        submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
+    ) -> Result<Option<FrameOutput<T>>, FrameError<E>> {
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        self.flight.begin().map_err(ExecuteError::Device)?;
+        let Some(io) = self.declare(frame, size, declare)? else { return Ok(None) };
+        let submission = self.executor.execute_with(self.plan, frame, world, self.imports, submit)?;
+        self.flight.submitted(submission.clone());
+        let requested = self.options.alias == Alias::Heap;
+        let not_placed = self.executor.not_placed().filter(|_| requested).cloned();
+        Ok(Some(FrameOutput { io, submission, not_placed }))
     }
 }

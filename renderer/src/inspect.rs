@@ -95,7 +95,7 @@ impl Inspector {
     ///
     /// # Errors
     /// Fails with [`InspectError`]. If a name does not exist, the error lists the names that do.
-    pub fn inspect<W: ?Sized + Sync + 'static>(
+    pub fn inspect<W: ?Sized>(
         &mut self,
         executor: &Executor,
         plan: &Plan,
@@ -111,7 +111,7 @@ impl Inspector {
     ///
     /// # Errors
     /// Fails like [`Inspector::inspect`].
-    pub fn inspect_target<W: ?Sized + Sync + 'static>(
+    pub fn inspect_target<W: ?Sized>(
         &mut self,
         executor: &Executor,
         plan: &Plan,

@@ -116,6 +116,7 @@
 //! | `noop` | [`Gpu::noop`], a device that validates all calls and draws nothing, for tests without a GPU | yes |
 //! | `threads` | `Workers`, which record the steps of a frame on several threads | no |
 //! | `files` | frames from graph files, with the feature of the same name in [`framegraph`] | no |
+//! | `tracing` | spans of the crate `tracing` for compilations, frames, steps and passes, with counts and bytes | no |
 //! | `testing` | module `mock` | no |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -140,6 +141,7 @@ mod placed;
 mod record;
 mod recorders;
 mod resources;
+mod spans;
 #[cfg(feature = "threads")]
 mod workers;
 #[cfg(not(feature = "threads"))]
@@ -166,6 +168,7 @@ pub use execute::error::{EffectSetting, ExecuteError, MemoryRequest, PassReason,
 pub use execute::executor::{Allocated, Executor, ExecutorOptions, UnusedAccess, WarmUpProgress};
 pub use execute::object_counts::ObjectCounts;
 pub use execute::part::{BoundBuffer, BoundResource, HistoryImage, ViewPart};
+pub use execute::split_draws::SplitDraws;
 pub use execute::targets::Targets;
 #[doc(inline)]
 pub use frame::Frame;

@@ -54,7 +54,7 @@ use shader::{compute_wgsl, raster_wgsl};
 use wgpu::{CompareFunction, StencilFaceState, StencilOperation, StencilState};
 
 /// Adds a mock recorder to every pass without a recorder. See the [module documentation](self).
-pub fn add_recorders<W: ?Sized + 'static>(frame: &mut Frame<W>) {
+pub fn add_recorders<W: ?Sized>(frame: &mut Frame<W>) {
     for pass in frame.graph().pass_ids() {
         if !frame.has_recorder(pass) {
             let kind = frame.graph().passes()[pass.index()].kind;

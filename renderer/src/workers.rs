@@ -8,7 +8,8 @@ use std::sync::Arc;
 /// Each thread is pinned to its own core while cores last. One core is left to the submitting thread, which records as
 /// well. Threads beyond the number of cores are not pinned, nor is the submitting thread.
 ///
-/// Pass the workers to [`Executor::record_on`](crate::Executor::record_on).
+/// Pass the workers to [`Executor::record_on`](crate::Executor::record_on), and allow threads with
+/// [`Frame::allow_threads`](crate::Frame::allow_threads).
 ///
 /// ```
 /// use framegraph_wgpu::{Executor, Gpu, Workers};
@@ -84,18 +85,28 @@ impl Workers {
         self.pool.as_deref()
     }
 
-    /// Calls `work` for every item and returns when all are done. The first item runs on the calling thread, the others
-    /// on the pool.
-    pub(crate) fn for_each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Sync) {
-        let Some((pool, (first, others))) = self.pool.as_ref().zip(items.split_first_mut()) else {
-            return items.iter_mut().for_each(work);
+    /// Calls every job with the world and returns when all are done. The first runs on the calling thread, the others on
+    /// the pool.
+    pub(crate) fn run<W: ?Sized + Sync>(&self, jobs: &mut [Job<'_, W>], world: &W) {
+        let Some((pool, (first, others))) = self.pool.as_ref().zip(jobs.split_first_mut()) else {
+            return jobs.iter_mut().for_each(|job| job(world));
         };
         pool.in_place_scope(|scope| {
-            let work = &work;
-            others.iter_mut().for_each(|item| scope.spawn(move |_| work(item)));
-            work(first);
+            others.iter_mut().for_each(|job| scope.spawn(move |_| job(world)));
+            first(world);
         });
     }
+}
+
+/// Work of one thread.
+pub(crate) type Job<'a, W> = &'a mut (dyn FnMut(&W) + Send);
+
+/// Function that runs jobs on several threads. A value exists only for worlds that threads can share.
+pub(crate) type ShareWorld<W> = fn(&Workers, &mut [Job<'_, W>], &W);
+
+/// Runs jobs on several threads.
+pub(crate) fn share_world<W: ?Sized + Sync>(workers: &Workers, jobs: &mut [Job<'_, W>], world: &W) {
+    workers.run(jobs, world);
 }
 
 impl fmt::Debug for Workers {
@@ -130,10 +141,13 @@ mod tests {
             let workers = Workers::with_threads(threads)?;
             assert_eq!(workers.threads(), threads.max(1));
             let mut items: Vec<(u32, Option<ThreadId>)> = (0..40).map(|i| (i, None)).collect();
-            workers.for_each(&mut items, |(number, by)| {
-                *number += 100;
+            let work = |(number, by): &mut (u32, Option<ThreadId>), more: &u32| {
+                *number += more;
                 *by = Some(thread::current().id());
-            });
+            };
+            let mut jobs: Vec<_> = items.iter_mut().map(|item| move |more: &u32| work(item, more)).collect();
+            let mut jobs: Vec<Job<'_, u32>> = jobs.iter_mut().map(|job| job as Job<'_, u32>).collect();
+            share_world(&workers, &mut jobs, &100);
             assert!(items.iter().zip(100..).all(|((number, by), i)| *number == i && by.is_some()), "{items:?}");
             assert_eq!(items[0].1, Some(thread::current().id()));
             assert_eq!(threads > 1, items[1].1 != items[0].1, "with {threads} threads");

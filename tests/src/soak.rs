@@ -230,7 +230,7 @@ fn stages(gpu: &Gpu, count: usize) -> Result<Vec<Stage>, Box<dyn Error>> {
 /// Creates a frame loop that records on several cores where that is faster.
 fn frames(gpu: &Gpu) -> Result<FrameLoop<World>, Box<dyn Error>> {
     let mut frames = FrameLoop::new(gpu);
-    frames.executor_mut().record_on(Some(Workers::new()?));
+    frames.record_on(Some(Workers::new()?));
     Ok(frames)
 }
 

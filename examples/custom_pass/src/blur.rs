@@ -20,7 +20,7 @@ const SHADER: Shader<'static> = Shader::new("custom_pass/blur", include_str!("bl
 ///
 /// # Errors
 /// Fails if `image` is stale, belongs to another graph, or cannot be sampled.
-pub fn blur<W: ?Sized + 'static>(frame: &mut Frame<W>, image: Texture) -> Result<Texture, DeclareError> {
+pub fn blur<W: ?Sized>(frame: &mut Frame<W>, image: Texture) -> Result<Texture, DeclareError> {
     // Scopes nest names: the passes are called `blur/halve`, `blur/across` and `blur/down`.
     frame.scope("blur", |frame| {
         let (_, half) = frame.add("halve", Halve { image })?;

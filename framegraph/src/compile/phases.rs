@@ -14,6 +14,7 @@ use crate::graph::Tables;
 use crate::id::{AccessId, PassId, ResourceId};
 use crate::options::{Alias, Options, Order};
 use crate::plan::Plan;
+use crate::spans::span;
 
 /// Working memory of [`compile`](crate::compile()). Reusing it avoids allocations; it carries no information from one
 /// compilation to the next.
@@ -79,35 +80,39 @@ pub(super) fn plan_order(
     } = scratch;
 
     let mut merged = Merged { steps, step_passes, inlined_into, format_of, decisions };
-    merge::merge(graph, caps, options, &measures.rows, order, merging, pass_steps, &mut merged);
+    span!("merge" => merge::merge(graph, caps, options, &measures.rows, order, merging, pass_steps, &mut merged));
     if trial.is_some_and(|most| steps.len() > most) {
         return false;
     }
-    let lowered = lowering.lower(graph, caps, steps, step_passes, pass_steps, decisions);
+    let lowered = span!("lower" => lowering.lower(graph, caps, steps, step_passes, pass_steps, decisions));
     let (declared, in_store, graph) = (graph.passes.len(), lowered.is_none(), lowered.unwrap_or(graph));
     let view = StepView { graph, step_passes, inlined_into };
-    lifetimes::lifetimes(view, steps, measures, frame, format_of, resources);
+    span!("lifetimes" => lifetimes::lifetimes(view, steps, measures, frame, format_of, resources));
     // The liveness found by culling is also valid for steps, unless passes were moved or inlined.
     let as_declared = options.order == Order::Declared && inlined_into.is_empty();
     if as_declared && in_store && !parts.has_several() {
-        ops_fast_path::ops(view, steps, after, stores, attachments, decisions);
+        span!("operations" => ops_fast_path::ops(view, steps, after, stores, attachments, decisions));
     } else {
-        loads::loads(view, parts, steps, writers, attachments, decisions);
-        stores::stores(view, parts, measures, steps, needs, attachments, decisions);
+        span!("loads" => loads::loads(view, parts, steps, writers, attachments, decisions));
+        span!("stores" => stores::stores(view, parts, measures, steps, needs, attachments, decisions));
     }
-    memoryless::memoryless(graph, caps, options, attachments, resources, decisions);
+    span!("memoryless" => memoryless::memoryless(graph, caps, options, attachments, resources, decisions));
     place::place(graph, &measures.outside, inlined_into, resources, decisions);
     let placed = options.alias == Alias::Heap && caps.placed;
-    let heaps = if placed { heap::heap(graph, caps, options, steps.len(), heap, resources, decisions) } else { None };
+    let heaps = if placed {
+        span!("alias" => heap::heap(graph, caps, options, steps.len(), heap, resources, decisions))
+    } else {
+        None
+    };
     *memory = heaps.unwrap_or_else(|| {
         let (share, measures) = (options.alias != Alias::Off, &measures.rows);
-        pool::pool(graph, measures, steps.len(), share, pool, resources, slots, decisions)
+        span!("alias" => pool::pool(graph, measures, steps.len(), share, pool, resources, slots, decisions))
     });
 
     barriers.clear();
     if caps.explicit_barriers && trial.is_none() {
         let hand = &mut scratch.barriers;
-        barriers::barriers(view, steps, caps, parts, attachments, resources, hand, barriers);
+        span!("barriers" => barriers::barriers(view, steps, caps, parts, attachments, resources, hand, barriers));
     }
     if !in_store {
         lowering.rename(declared, step_passes, decisions);

@@ -38,7 +38,7 @@ pub fn bloom<W>(
     size_texels: [u32; 2],
 ) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<Views> + ?Sized,
 {
     let (view, hdr) = (handles.view(), handles.get(Slot::HDR)?);
     let chain = BloomChain::new(settings, size_texels);

@@ -43,7 +43,7 @@ pub fn depth_of_field<W>(
     size_texels: [u32; 2],
 ) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<Views> + ?Sized,
 {
     let depth = single_sample_depth(frame, handles, DepthOf::FirstSample)?;
     let (view, hdr, extent) = (handles.view(), handles.get(Slot::HDR)?, handles.extent());

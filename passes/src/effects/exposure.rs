@@ -29,7 +29,7 @@ use framegraph_wgpu::Frame;
 /// Returns the error of a refused pass.
 pub(crate) fn measure<W>(frame: &mut Frame<W>, handles: &mut Handles, measure: Measure) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + ?Sized + 'static,
+    W: AsRef<Programs> + ?Sized,
 {
     if measure.light {
         let light = smaller(frame, handles, MeasureStep::Light { hdr: handles.get(Slot::HDR)? })?;
@@ -46,7 +46,7 @@ where
 /// Declares a step, and one that reduces its result to an eighth of the width and height again.
 fn smaller<W>(frame: &mut Frame<W>, handles: &Handles, first: MeasureStep) -> Result<Texture, StageError>
 where
-    W: AsRef<Programs> + ?Sized + 'static,
+    W: AsRef<Programs> + ?Sized,
 {
     let extent = handles.extent();
     let small = frame.scope("measure", |frame| {

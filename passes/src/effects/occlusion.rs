@@ -38,7 +38,7 @@ pub fn occlusion<W>(
     precision: Precision,
 ) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
 {
     let method = if matches!(settings.method, Method::Sao { .. }) { "SAO" } else { "GTAO" };
     let told = format_args!("the settings ask for it: {method} within {} m", settings.radius_m);

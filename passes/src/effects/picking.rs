@@ -169,7 +169,7 @@ impl std::fmt::Debug for PickError {
 }
 
 /// Picks single pixels in the views of a world and waits for the result. Keeps its pipelines and plan between picks.
-pub struct Picker<W: ?Sized + 'static> {
+pub struct Picker<W: ?Sized> {
     executor: Executor,
     frame: Frame<W>,
     plan: Plan,
@@ -178,7 +178,7 @@ pub struct Picker<W: ?Sized + 'static> {
 
 impl<W> Picker<W>
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + Sync + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + Sync + ?Sized,
 {
     /// Creates a picker for this device.
     #[must_use]

@@ -42,7 +42,7 @@ pub fn reflections<W>(
     format: Format,
 ) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
 {
     let (view, extent) = (handles.view(), handles.extent());
     let told = format_args!(

@@ -35,7 +35,7 @@ use framegraph_wgpu::Frame;
 /// own.
 pub fn temporal<W>(frame: &mut Frame<W>, handles: &mut Handles, settings: &TaaSettings) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<Views> + ?Sized,
 {
     let depth = single_sample_depth(frame, handles, DepthOf::FirstSample)?;
     let hdr = handles.get(Slot::HDR)?;

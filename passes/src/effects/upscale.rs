@@ -73,11 +73,7 @@ impl<W: AsRef<Programs> + ?Sized> Record<W> for Enlarge {
 
 /// Returns the target for a stage before upscaling: encoded and of the view's size if upscaling follows, otherwise
 /// [`Handles::target`].
-pub(crate) fn encoded_target<W: ?Sized + 'static>(
-    frame: &mut Frame<W>,
-    handles: &Handles,
-    upscale: Option<Upscale>,
-) -> Target {
+pub(crate) fn encoded_target<W: ?Sized>(frame: &mut Frame<W>, handles: &Handles, upscale: Option<Upscale>) -> Target {
     match upscale {
         Some(_) => frame.graph_mut().texture("encoded", TextureDesc::new(handles.extent(), ENCODED)).into(),
         None => handles.target(),
@@ -90,7 +86,7 @@ pub(crate) fn encoded_target<W: ?Sized + 'static>(
 /// Returns the error of a refused pass.
 pub fn enlarge<W>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Upscale) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + ?Sized + 'static,
+    W: AsRef<Programs> + ?Sized,
 {
     let Upscale { filter, sharpness, .. } = *settings;
     let sharpens = sharpness > 0.0;

@@ -15,7 +15,7 @@ use framegraph::Format;
 use framegraph_wgpu::Frame;
 
 /// Declares the depth and motion vectors of visible surfaces, if requested.
-pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     samples: u8,
@@ -33,7 +33,7 @@ pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Siz
 }
 
 /// Declares ambient occlusion, unless a stage has already provided it.
-pub(super) fn occlusion<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+pub(super) fn occlusion<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     settings: Option<OcclusionSettings>,
@@ -48,7 +48,7 @@ pub(super) fn occlusion<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?S
 }
 
 /// Declares reflections, unless a stage has already provided them.
-pub(super) fn reflection<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+pub(super) fn reflection<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     settings: Option<ReflectionSettings>,

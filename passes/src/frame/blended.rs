@@ -33,7 +33,7 @@ pub(super) struct Blended {
 /// Declares the passes of an order-independent technique.
 pub(super) fn blended<W>(frame: &mut Frame<W>, handles: &mut Handles, own: &Blended) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
 {
     let Blended { transparency, samples, shading, fog, after_blur } = *own;
     if !transparency.is_unordered() {
@@ -72,7 +72,7 @@ fn moments<W>(
     (moments, samples): (MomentTransparency, u8),
 ) -> Summed
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
 {
     let mut moments = moments;
     if samples > 1 && moments.precision == MomentPrecision::Full {
@@ -87,7 +87,7 @@ where
 
 fn peeled<W>(frame: &mut Frame<W>, surfaces: BlendedSurfaces, opaque: Texture, count: u8) -> Summed
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
 {
     let peel = PeelDepth { view: surfaces.view, opaque, nearer: None };
     let depth = frame.add("depth", peel)?.depth;

@@ -31,7 +31,7 @@ pub(super) struct Glass {
 }
 
 /// Declares the picture behind refractive surfaces, with one pass for each level.
-pub(super) fn scene<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
+pub(super) fn scene<W: AsRef<Programs> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     levels: u8,
@@ -57,7 +57,7 @@ pub(super) fn scene<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
 /// Declares the refractive layers from back to front. The previous stage provides the picture behind the first layer.
 pub(super) fn transparent<W>(frame: &mut Frame<W>, handles: &mut Handles, glass: &Glass) -> Result<(), StageError>
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
 {
     if glass.levels == 0 {
         return Ok(());

@@ -8,7 +8,7 @@ use crate::program::Programs;
 use crate::stages::{Handles, Slot, StageError};
 use framegraph_wgpu::Frame;
 
-pub(super) fn dof<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
+pub(super) fn dof<W: AsRef<Programs> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     settings: Option<DofSettings>,
@@ -22,7 +22,7 @@ pub(super) fn dof<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
 
 /// Declares bloom, unless a stage has already provided it. With TAA, bloom does not weight bright pixels against
 /// flicker.
-pub(super) fn bloom<W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static>(
+pub(super) fn bloom<W: AsRef<Programs> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     settings: Option<BloomSettings>,

@@ -26,7 +26,7 @@ pub(super) struct PostWay {
 }
 
 /// Declares the point-wise effects, in one pass or in one pass each.
-pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables> + ?Sized + 'static>(
+pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     (settings, bloom): (PostSettings, Option<BloomMix>),
@@ -52,7 +52,7 @@ pub(super) fn post<W: AsRef<Programs> + AsRef<FrameIndex> + AsRef<GradingTables>
 }
 
 /// Declares FXAA.
-pub(super) fn fxaa<W: AsRef<Programs> + ?Sized + 'static>(
+pub(super) fn fxaa<W: AsRef<Programs> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     upscale: Option<Upscale>,

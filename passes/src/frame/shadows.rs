@@ -11,7 +11,7 @@ use framegraph::Texture;
 use framegraph_wgpu::Frame;
 
 /// Declares shadow maps, unless a stage has already provided them, and the structure if contact shadows are on.
-pub(super) fn shadow<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+pub(super) fn shadow<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     settings: Option<ShadowSettings>,

@@ -70,6 +70,7 @@ impl Executed {
     /// Records on `threads` threads from now on: always, or only where it is measured to be faster.
     pub fn on_threads(mut self, threads: usize, always: bool) -> Result<Self, Box<dyn Error>> {
         let workers = Workers::with_threads(threads)?;
+        self.frame.allow_threads();
         match always {
             true => self.executor.force_record_on(workers),
             false => self.executor.record_on(Some(workers)),

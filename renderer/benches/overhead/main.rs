@@ -2,7 +2,7 @@
 //!
 //! Runs on wgpu's noop device. With `--count WHO PASSES DRAWS FRAMES` it only runs frames, for a profiler that counts
 //! instructions. The hand-written code and the executor take no time measurements; `timed` is an executor that measures
-//! its steps, as by default.
+//! its steps.
 
 mod by_hand;
 mod executed;

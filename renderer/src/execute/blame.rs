@@ -16,7 +16,7 @@ use framegraph::{Join, PassId, Plan, ResourceId, StepId, StepPass};
 use wgpu::{BufferTransition, BufferUses, CommandEncoderDescriptor, TextureTransition, TextureViewDescriptor};
 
 /// Returns the first pass that wgpu rejects, with its reason. `None` if every pass is accepted on its own.
-pub(crate) fn refused_pass<W: ?Sized + 'static>(
+pub(crate) fn refused_pass<W: ?Sized>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
     recording: &mut Recording,

@@ -1,6 +1,7 @@
 //! Recorded commands of a frame.
 
-use wgpu::{CommandBuffer, Queue, SubmissionIndex};
+use framegraph::StepId;
+use wgpu::{CommandBuffer, CommandEncoder, Queue, SubmissionIndex};
 
 /// Commands of a frame, recorded but not submitted.
 ///
@@ -55,6 +56,17 @@ impl FrameCommands {
     pub fn buffers(&self) -> usize {
         self.buffers.len()
     }
+}
+
+/// Where the commands of a frame are recorded.
+pub(crate) enum Destination<'d> {
+    /// Into command buffers of the executor, on several threads if that is faster.
+    Own,
+    /// Into command buffers of the executor, on this thread. The function is called after each step with the number of
+    /// pipelines created so far.
+    Stepwise(&'d mut dyn FnMut(StepId, u64)),
+    /// Into the caller's encoder.
+    Encoder(&'d mut CommandEncoder),
 }
 
 #[cfg(test)]

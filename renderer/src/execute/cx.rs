@@ -35,6 +35,24 @@ impl StepEncoder<'_> {
             StepEncoder::Copy(encoder) => StepEncoder::Copy(encoder),
         }
     }
+
+    /// Begins a group of commands with a name for debuggers such as RenderDoc.
+    pub(crate) fn push_debug_group(&mut self, name: &str) {
+        match self {
+            StepEncoder::Raster(pass) => pass.push_debug_group(name),
+            StepEncoder::Compute(pass) => pass.push_debug_group(name),
+            StepEncoder::Copy(encoder) => encoder.push_debug_group(name),
+        }
+    }
+
+    /// Ends the last group.
+    pub(crate) fn pop_debug_group(&mut self) {
+        match self {
+            StepEncoder::Raster(pass) => pass.pop_debug_group(),
+            StepEncoder::Compute(pass) => pass.pop_debug_group(),
+            StepEncoder::Copy(encoder) => encoder.pop_debug_group(),
+        }
+    }
 }
 
 /// Context of a recorder: gives access to the current render or compute pass, views of declared resources, pipelines

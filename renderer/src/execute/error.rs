@@ -100,6 +100,16 @@ pub enum RecordError {
         /// Reason given by wgpu, on one line.
         message: String,
     },
+    /// wgpu rejected a range of draws ([`Cx::draw_split`](crate::Cx::draw_split)).
+    #[error("wgpu rejected the draws from {first} to {end}: {message}")]
+    Draws {
+        /// First draw of the range.
+        first: u32,
+        /// End of the range.
+        end: u32,
+        /// Reason given by wgpu, on one line.
+        message: String,
+    },
     /// A bind group was rejected, or the pipeline has no such group.
     #[error(transparent)]
     Binding(Box<BindingError>),
@@ -278,6 +288,12 @@ pub enum ExecuteError {
         /// Placed resource.
         resource: Named<ResourceId>,
     },
+    /// The frame cannot be recorded into one command encoder.
+    #[error(
+        "textures of the frame share memory, which needs several command buffers; compile with `Alias::Pool`, or record \
+         with `Executor::record`"
+    )]
+    SharedMemory,
     /// The driver cannot create the placed resources.
     #[error("the frame's textures cannot share one block of memory: {0}; compile with `Alias::Pool`")]
     NotPlaced(#[from] NotPlaced),

@@ -16,12 +16,12 @@ pub use warm_up::WarmUpProgress;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
 use crate::execute::blame::{not_submitted, refused_pass};
-use crate::execute::commands::FrameCommands;
+use crate::execute::commands::{Destination, FrameCommands};
 use crate::execute::error::{ExecuteError, MemoryRequest, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
 use crate::execute::steps::Passes;
-use crate::execute::threads::{Threads, record_part};
+use crate::execute::threads::{Threads, record_into, record_part};
 use crate::frame::Frame;
 use crate::frame_key::FrameKey;
 use crate::measure::timing::Timing;
@@ -32,7 +32,8 @@ use crate::resources::imports::Imports;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::{Limits, Pool};
 use crate::resources::realize::{Realized, Sources};
-use framegraph::{Counts, Plan, ResourceId, StepId};
+use crate::spans::{executed, span};
+use framegraph::{Counts, Plan, ResourceId};
 use std::sync::atomic::AtomicBool;
 use wgpu::SubmissionIndex;
 
@@ -51,10 +52,11 @@ pub struct ExecutorOptions {
     /// Number of frames after which unused pipelines and shader modules are dropped; 36,000 by default, ten minutes at
     /// 60 frames per second.
     pub max_pipeline_age: u64,
-    /// Measures CPU times of steps, and GPU times if the device supports timestamps. If both `timing` and `trace` are
-    /// off, only the CPU time of whole frames is measured, with two clock reads per frame.
+    /// Measures CPU times of steps, and GPU times if the device supports timestamps. Off by default, because it adds
+    /// about a third to the execution of small frames; [`Executor::set_timing`] changes it later. If both `timing` and
+    /// `trace` are off, only the CPU time of whole frames is measured, with two clock reads per frame.
     pub timing: bool,
-    /// Stores the times of every frame in addition to the statistics ([`Timing::trace`]).
+    /// Measures times as `timing` does, and also stores those of every frame ([`Timing::trace`]).
     pub trace: bool,
     /// Fills undefined contents with NaN or magenta, to find passes that read contents no pass wrote.
     pub poison: bool,
@@ -63,7 +65,7 @@ pub struct ExecutorOptions {
 impl Default for ExecutorOptions {
     fn default() -> Self {
         let (max_age, pool_budget, max_pipeline_age) = (30, 3, 36_000);
-        Self { max_age, pool_budget, max_pipeline_age, timing: true, trace: false, poison: false }
+        Self { max_age, pool_budget, max_pipeline_age, timing: false, trace: false, poison: false }
     }
 }
 
@@ -161,7 +163,7 @@ impl Executor {
     /// # Errors
     /// Fails with [`ExecuteError`]. Nothing of the frame is submitted in that case, histories do not advance, and the
     /// next frame starts clean.
-    pub fn execute<W: ?Sized + Sync + 'static>(
+    pub fn execute<W: ?Sized>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
@@ -198,7 +200,7 @@ impl Executor {
     ///
     /// # Errors
     /// Fails like [`Executor::execute`]. If recording fails, `submit` is not called.
-    pub fn execute_with<W: ?Sized + Sync + 'static>(
+    pub fn execute_with<W: ?Sized>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
@@ -212,14 +214,15 @@ impl Executor {
 
     /// Executes a frame like [`Executor::execute_with`]. For inspections, the plan's graph may lack passes of the frame
     /// and have one additional pass.
-    pub(crate) fn run<W: ?Sized + Sync + 'static>(
+    pub(crate) fn run<W: ?Sized>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
         imports: &Imports,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<SubmissionIndex, ExecuteError> {
-        let commands = self.record_frame(plan, passes, imports, None)?;
+        let commands = self.record_frame(plan, passes, imports, Destination::Own)?;
+        let _span = span!("submit", command_buffers = commands.buffers());
         let begun = self.recording.now();
         let watch = self.gpu.watch("submitting a frame");
         self.upload();
@@ -251,15 +254,15 @@ impl Executor {
         self.drop_unused();
     }
 
-    /// Records a frame. `recorded` is called after each step with the number of pipelines created so far; with it, all
-    /// steps are recorded on one thread.
-    fn record_frame<W: ?Sized + Sync + 'static>(
+    /// Records a frame into `to`. The result has no command buffers if that is the caller's encoder.
+    fn record_frame<W: ?Sized>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
         imports: &Imports,
-        recorded: Option<&mut dyn FnMut(StepId, u64)>,
+        to: Destination<'_>,
     ) -> Result<FrameCommands, ExecuteError> {
+        let span = span!("frame"; steps, passes, loads, stores, loaded_bytes, stored_bytes);
         // The last submission has already polled the device, so polling is only needed to read times.
         if self.timing.is_enabled() {
             self.gpu.poll()?;
@@ -270,16 +273,18 @@ impl Executor {
         self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
         self.executed = Counts::default();
         self.timing.begin_frame(&self.gpu, plan);
-        let timed = self.threads.begin_frame(plan, self.timing.plan(), self.options.max_age);
+        let may_split = passes.frame.share().is_some();
+        let timed = self.threads.begin_frame(plan, self.timing.plan(), may_split, self.options.max_age);
         self.recording.begin_frame(timed, self.options.max_age);
 
         let watch = self.recording.in_wgpu(|| self.gpu.watch("a frame"));
         let mut elsewhere = Ok(());
         let prepared = self.prepare(plan, passes.frame.key(), imports);
-        let ran = prepared.and_then(|()| self.record_steps(plan, passes, recorded, &mut elsewhere));
+        let ran = prepared.and_then(|()| self.record_steps(plan, passes, to, &mut elsewhere));
         let begun = self.recording.now();
         let caught = watch.end(self.gpu.errors()).and(elsewhere);
         self.recording.took_in_wgpu(begun);
+        executed(&span, plan);
         match (ran, caught) {
             (ran, Ok(())) => ran,
             (Err(said), Err(error)) => {
@@ -304,17 +309,14 @@ impl Executor {
 
     /// Records the frame again, pass by pass, to find the pass whose commands wgpu rejected. Submits nothing. Returns
     /// `None` if no single pass is at fault.
-    fn blame<W: ?Sized + Sync + 'static>(
-        &mut self,
-        plan: &Plan,
-        passes: &Passes<'_, W>,
-        imports: &Imports,
-    ) -> Option<ExecuteError> {
+    fn blame<W: ?Sized>(&mut self, plan: &Plan, passes: &Passes<'_, W>, imports: &Imports) -> Option<ExecuteError> {
         let scopes = ErrorScopes::open(&self.gpu.device);
         let prepared = self.prepare(plan, passes.frame.key(), imports);
         let refused = scopes.close("a texture").is_ok() && prepared.is_ok();
-        let Self { gpu, caches, realized, timing, touched, options, recording, .. } = self;
-        let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
+        let Self { gpu, caches, realized, timing, touched, options, recording, threads, .. } = self;
+        let workers = threads.workers().cloned();
+        let (workers, poison) = (workers.as_ref(), options.poison);
+        let frame = &Prepared { gpu, plan, realized, caches, timing, workers, touched, poison };
         let blamed = refused.then(|| refused_pass(frame, passes, recording)).flatten();
         self.discard_frame();
         blamed.map(|(pass, message)| ExecuteError::Refused { pass: Named::pass(plan, pass), message })
@@ -322,6 +324,8 @@ impl Executor {
 
     /// Creates or reuses all textures and buffers of the frame.
     fn prepare(&mut self, plan: &Plan, owner: &FrameKey, imports: &Imports) -> Result<(), ExecuteError> {
+        let _span =
+            span!("realize", resources = plan.resources().len(), bytes = plan.memory().bytes + plan.memory().own_bytes);
         let Self { gpu, textures, buffers, histories, arenas, realized, options, touched, .. } = self;
         touched.clear();
         touched.resize_with(plan.graph().accesses().len(), AtomicBool::default);
@@ -330,24 +334,31 @@ impl Executor {
     }
 
     /// Records all steps. Errors on other threads are stored in `elsewhere`.
-    fn record_steps<W: ?Sized + Sync + 'static>(
+    fn record_steps<W: ?Sized>(
         &mut self,
         plan: &Plan,
         passes: &Passes<'_, W>,
-        recorded: Option<&mut dyn FnMut(StepId, u64)>,
+        to: Destination<'_>,
         elsewhere: &mut Result<(), DeviceError>,
     ) -> Result<FrameCommands, ExecuteError> {
         let Self { gpu, caches, arenas, realized, timing, touched, options, recording, threads, executed, .. } = self;
-        let frame = &Prepared { gpu, plan, realized, caches, timing, touched, poison: options.poison };
+        let workers = threads.workers().cloned();
+        let (workers, poison) = (workers.as_ref(), options.poison);
+        let frame = &Prepared { gpu, plan, realized, caches, timing, workers, touched, poison };
         let arenas = &*arenas;
-        let alone = recorded.is_some();
-        let shared = if alone { None } else { threads.record(frame, arenas, passes, recording, elsewhere) };
         let all = 0..plan.steps().len() as u32;
-        let commands = shared.unwrap_or_else(|| record_part(frame, arenas, passes, all, recording, recorded));
+        let commands = match to {
+            Destination::Own => {
+                let split = threads.record(frame, arenas, passes, recording, elsewhere);
+                let commands = split.unwrap_or_else(|| record_part(frame, arenas, passes, all, recording, None));
+                threads.end_frame(recording);
+                commands
+            }
+            Destination::Stepwise(each) => record_part(frame, arenas, passes, all, recording, Some(each)),
+            Destination::Encoder(_) if arenas.current().is_some() => Err(ExecuteError::SharedMemory),
+            Destination::Encoder(encoder) => record_into(frame, passes, recording, encoder).map(|()| Vec::new()),
+        };
         let commands = commands.map(|buffers| FrameCommands::new(buffers, arenas.submits_separately(gpu)));
-        if !alone {
-            threads.end_frame(recording);
-        }
         *executed = recording.executed;
         executed.memoryless = realized.memoryless();
         let commands = commands?;
@@ -368,7 +379,7 @@ impl Executor {
 }
 
 /// Checks that a plan belongs to a frame.
-fn check<W: ?Sized + 'static>(plan: &Plan, frame: &Frame<W>) -> Result<(), ExecuteError> {
+fn check<W: ?Sized>(plan: &Plan, frame: &Frame<W>) -> Result<(), ExecuteError> {
     if frame.graph().same_as(plan.graph()) { Ok(()) } else { Err(ExecuteError::OtherPlan) }
 }
 

@@ -8,6 +8,7 @@ use crate::pipelines::samplers::SamplerCache;
 use crate::placed::driver::Object;
 use crate::resources::realize::Realized;
 use crate::resources::views::ViewCache;
+use crate::workers::Workers;
 use framegraph::Plan;
 use std::sync::atomic::AtomicBool;
 use wgpu::Texture;
@@ -54,6 +55,8 @@ pub(crate) struct Prepared<'a> {
     pub(crate) realized: &'a Realized,
     pub(crate) caches: &'a Caches,
     pub(crate) timing: &'a Timing,
+    /// Threads that record parts of a pass.
+    pub(crate) workers: Option<&'a Workers>,
     /// For each access of the graph, whether a recorder looked it up.
     pub(crate) touched: &'a [AtomicBool],
     /// True if undefined contents are filled ([`poison`](crate::debug::poison)).

@@ -49,6 +49,11 @@ impl Recording {
         Self { uniforms, requests, measured, timed, executed, poisoned, steps, in_wgpu, inlined, refused }
     }
 
+    /// Turns time measurements on or off, from the next frame on.
+    pub(crate) fn set_measured(&mut self, measured: bool) {
+        self.measured = measured;
+    }
+
     /// Begins a frame and resets counts and times. `timed` measures steps even if measurements are off. Cached views
     /// are released every `max_age` frames.
     pub(crate) fn begin_frame(&mut self, timed: bool, max_age: u64) {

@@ -13,6 +13,7 @@ use crate::execute::targets::Targets;
 use crate::frame::Frame;
 use crate::measure::timing::TimestampWrites;
 use crate::named::Named;
+use crate::spans::span;
 use framegraph::{Join, MAX_COLORS, PassFlags, PassId, PassKind, Plan, StepId, StepPass};
 use wgpu::{
     CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, RenderPass, RenderPassDescriptor,
@@ -27,7 +28,7 @@ pub(crate) struct Extra<'x> {
 }
 
 /// Recorders of the passes of a plan.
-pub(crate) struct Passes<'x, W: ?Sized + 'static> {
+pub(crate) struct Passes<'x, W: ?Sized> {
     pub(crate) frame: &'x Frame<W>,
     pub(crate) world: &'x W,
     pub(crate) extra: Option<Extra<'x>>,
@@ -37,7 +38,7 @@ pub(crate) struct Passes<'x, W: ?Sized + 'static> {
 ///
 /// # Errors
 /// Fails if an attachment or clear is not supported, or a recorder fails. The encoder must be dropped in that case.
-pub(crate) fn record_step<W: ?Sized + 'static>(
+pub(crate) fn record_step<W: ?Sized>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
     step: StepId,
@@ -48,13 +49,21 @@ pub(crate) fn record_step<W: ?Sized + 'static>(
 }
 
 /// Records the first passes of a step.
-pub(crate) fn record_members<W: ?Sized + 'static>(
+pub(crate) fn record_members<W: ?Sized>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
     (step, members): (StepId, &[StepPass]),
     recording: &mut Recording,
     encoder: &mut CommandEncoder,
 ) -> Result<(), ExecuteError> {
+    let _span = span!(
+        "step",
+        name = label(frame.plan, step),
+        index = step.index(),
+        kind = frame.plan.steps()[step.index()].kind.word(),
+        loaded_bytes = frame.plan.step_traffic(step, frame.plan.frame()).loaded_bytes,
+        stored_bytes = frame.plan.step_traffic(step, frame.plan.frame()).stored_bytes
+    );
     recording.requests.begin(step);
     if frame.poison {
         recording.poisoned += poison::at_first_use(frame, step, encoder);
@@ -161,7 +170,7 @@ fn begin_raster(
     encoder.begin_render_pass(&descriptor).forget_lifetime()
 }
 
-fn record_pass<W: ?Sized + 'static>(
+fn record_pass<W: ?Sized>(
     frame: &Prepared<'_>,
     passes: &Passes<'_, W>,
     (step, StepPass { pass, join }): (StepId, StepPass),
@@ -169,9 +178,15 @@ fn record_pass<W: ?Sized + 'static>(
     recording: &mut Recording,
     mut encoder: StepEncoder<'_>,
 ) -> Result<(), ExecuteError> {
+    let _span = span!("pass", name = frame.plan.graph().pass_name(pass));
     let Passes { frame: declared, world, extra } = *passes;
     if let (StepEncoder::Raster(raster), true) = (&mut encoder, frame.plan.passes_of(step)[0].pass != pass) {
         reset_state(raster, targets.extent);
+    }
+    // The label of a render or compute pass with one pass of the graph is its debug group.
+    let grouped = frame.plan.passes_of(step).len() > 1 || matches!(encoder, StepEncoder::Copy(_));
+    if grouped {
+        encoder.push_debug_group(frame.plan.graph().pass_name(pass));
     }
     let resolves = join == Join::Resolve;
     let takes_epilogue = frame.plan.graph().passes()[pass.index()].flags.has(PassFlags::TAKES_EPILOGUE);
@@ -183,8 +198,17 @@ fn record_pass<W: ?Sized + 'static>(
         inlined = inlined_into(&mut cx, declared, world)?;
     }
     let (own, requested_inlined) = (&*inlined, false);
-    let mut cx =
-        Cx { frame, step, pass, targets, recording: &mut *recording, encoder, inlined: own, requested_inlined };
+    let (recording_of, encoder_of) = (&mut *recording, encoder.reborrow());
+    let mut cx = Cx {
+        frame,
+        step,
+        pass,
+        targets,
+        recording: recording_of,
+        encoder: encoder_of,
+        inlined: own,
+        requested_inlined,
+    };
     let recorded = match extra {
         _ if resolves => Some(full_screen_resolve::record(&mut cx)),
         Some(extra) if extra.pass == pass => Some((extra.record)(&mut cx)),
@@ -203,17 +227,16 @@ fn record_pass<W: ?Sized + 'static>(
         }
         Some(Ok(())) => {}
     }
+    if grouped {
+        encoder.pop_debug_group();
+    }
     recording.inlined.extend(inlined.iter().map(|i| i.pass));
     recording.executed.passes += u32::from(!resolves);
     Ok(())
 }
 
 /// Returns the inlined passes of the current pass with their epilogues.
-fn inlined_into<W: ?Sized + 'static>(
-    cx: &mut Cx<'_>,
-    declared: &Frame<W>,
-    world: &W,
-) -> Result<Vec<Inlined>, ExecuteError> {
+fn inlined_into<W: ?Sized>(cx: &mut Cx<'_>, declared: &Frame<W>, world: &W) -> Result<Vec<Inlined>, ExecuteError> {
     let (plan, producer) = (cx.frame.plan, cx.pass);
     let mut inlined = Vec::new();
     for (pass, slot) in inlined_after(plan, cx.step, producer) {

@@ -10,12 +10,13 @@ use crate::execute::segments::Segments;
 use crate::execute::steps::{Passes, record_step};
 use crate::execute::thread_balancer::ThreadBalancer;
 use crate::placed::arenas::Arenas;
-use crate::workers::Workers;
+use crate::spans::{here, span};
+use crate::workers::{Job, Workers};
 use framegraph::{Placement, Plan, StepId, StoreOp, Usage};
 use std::ops::Range;
 #[cfg(feature = "threads")]
 use wgpu::Device;
-use wgpu::{CommandBuffer, Queue};
+use wgpu::{CommandBuffer, CommandEncoder, Queue};
 
 /// State of multithreaded recording.
 #[derive(Debug, Default)]
@@ -40,7 +41,6 @@ struct Part<'a> {
 }
 
 impl Threads {
-    #[cfg(feature = "threads")]
     pub(crate) fn workers(&self) -> Option<&Workers> {
         self.workers.as_ref()
     }
@@ -54,18 +54,24 @@ impl Threads {
         (self.workers, self.balancer) = (workers, ThreadBalancer::default());
     }
 
+    /// Turns time measurements of the other threads on or off.
+    pub(crate) fn set_measured(&mut self, measured: bool) {
+        self.others.iter_mut().for_each(|other| other.set_measured(measured));
+    }
+
     /// Splits all frames regardless of cost, for tests.
     #[cfg(all(feature = "threads", any(test, feature = "testing")))]
     pub(crate) fn always_split(&mut self) {
         self.balancer.always_split();
     }
 
-    /// Begins a frame of the plan with this number. Returns whether its steps must be timed.
-    pub(crate) fn begin_frame(&mut self, plan: &Plan, number: u64, max_age: u64) -> bool {
+    /// Begins a frame of the plan with this number. `may_split` says whether threads can share its world. Returns
+    /// whether its steps must be timed.
+    pub(crate) fn begin_frame(&mut self, plan: &Plan, number: u64, may_split: bool, max_age: u64) -> bool {
         self.recorded = 1;
         let Some(workers) = &self.workers else { return false };
         self.others.iter_mut().for_each(|other| other.begin_frame(false, max_age));
-        if self.balancer.begin_unmeasured(number, plan.steps().len()) {
+        if !may_split || self.balancer.begin_unmeasured(number, plan.steps().len()) {
             return false;
         }
         self.begun = Some(Instant::now());
@@ -110,7 +116,7 @@ impl Threads {
     /// Records the frame in parts, if it should be split. Adds the counts of all threads to `first`, the state of the
     /// submitting thread. Errors on other threads are stored in `caught`. Returns `None` if the frame should be
     /// recorded on one thread.
-    pub(crate) fn record<W: ?Sized + Sync + 'static>(
+    pub(crate) fn record<W: ?Sized>(
         &mut self,
         frame: &Prepared<'_>,
         arenas: &Arenas,
@@ -120,6 +126,8 @@ impl Threads {
     ) -> Option<Result<Vec<CommandBuffer>, ExecuteError>> {
         let Self { workers, others, balancer, recorded, .. } = self;
         let workers = workers.as_ref().filter(|_| balancer.parts().len() > 1)?;
+        let Passes { frame: declared, world, extra } = *passes;
+        let share = declared.share()?;
         let recordings = std::iter::once(&mut *first).chain(others.iter_mut());
         let mut parts: Vec<Part<'_>> = balancer
             .parts()
@@ -133,7 +141,10 @@ impl Threads {
             })
             .collect();
         *recorded = parts.len();
-        workers.for_each(&mut parts, |part| {
+        let parent = here();
+        let record = |part: &mut Part<'_>, world: &W| {
+            let _span = span!("part" in &parent);
+            let passes = &Passes { frame: declared, world, extra };
             let begun = part.recording.now();
             let scopes = ErrorScopes::open(&frame.gpu.device);
             part.recording.took_in_wgpu(begun);
@@ -141,7 +152,11 @@ impl Threads {
             let begun = part.recording.now();
             part.caught = scopes.close("a frame");
             part.recording.took_in_wgpu(begun);
-        });
+        };
+        let record = &record;
+        let mut jobs: Vec<_> = parts.iter_mut().map(|part| move |world: &W| record(part, world)).collect();
+        let mut jobs: Vec<_> = jobs.iter_mut().map(|job| job as Job<'_, W>).collect();
+        share(workers, &mut jobs, world);
         let mut commands = Ok(Vec::new());
         for part in parts {
             // Reports the first error in the order of the steps, as with one thread.
@@ -198,7 +213,7 @@ fn may_begin(plan: &Plan, may: &mut Vec<bool>) {
 }
 
 /// Records steps on this thread. `recorded` is called after each step with the number of pipelines created so far.
-pub(crate) fn record_part<W: ?Sized + 'static>(
+pub(crate) fn record_part<W: ?Sized>(
     frame: &Prepared<'_>,
     arenas: &Arenas,
     passes: &Passes<'_, W>,
@@ -221,4 +236,16 @@ pub(crate) fn record_part<W: ?Sized + 'static>(
         }
         segments.finish()
     }))
+}
+
+/// Records all steps on this thread, into an encoder of the caller.
+pub(crate) fn record_into<W: ?Sized>(
+    frame: &Prepared<'_>,
+    passes: &Passes<'_, W>,
+    recording: &mut Recording,
+    encoder: &mut CommandEncoder,
+) -> Result<(), ExecuteError> {
+    frame.plan.step_ids().try_for_each(|step| record_step(frame, passes, step, recording, encoder))?;
+    recording.in_wgpu(|| frame.timing.resolve(encoder));
+    Ok(())
 }

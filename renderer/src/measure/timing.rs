@@ -91,6 +91,12 @@ impl Timing {
         }
     }
 
+    /// Turns step times on or off, and removes all measurements.
+    pub(crate) fn set_enabled(&mut self, enabled: bool) {
+        self.enabled = enabled;
+        self.reset();
+    }
+
     /// Returns the times of one step of the last executed plan.
     pub fn step(&self, step: StepId) -> Times {
         self.steps.get(step.index()).map(StepDurations::times).unwrap_or_default()
@@ -141,7 +147,7 @@ impl Timing {
         if let Some(trace) = &mut self.trace {
             trace.begin_frame(plan, generation, self.warm_up_left > 0);
         }
-        if !self.enabled || !gpu.device.features().contains(Features::TIMESTAMP_QUERY) {
+        if !self.is_enabled() || !gpu.device.features().contains(Features::TIMESTAMP_QUERY) {
             return;
         }
         let copies = gpu.device.features().contains(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);

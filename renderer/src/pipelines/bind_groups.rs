@@ -92,18 +92,31 @@ impl BindGroupCache {
             || KeyHashBuilder::default().hash_one((layout, bindings)),
             |(of, bound)| of == layout && **bound == *bindings,
             || {
-                let entries: Vec<_> = bindings
-                    .iter()
-                    .map(|(binding, b)| BindGroupEntry { binding: *binding, resource: b.resource() })
-                    .collect();
-                let scopes = ErrorScopes::open(device);
-                let label = label();
-                let descriptor = BindGroupDescriptor { label: Some(&label), layout, entries: &entries };
-                let group = device.create_bind_group(&descriptor);
-                scopes.close("a bind group")?;
+                let group = create(device, layout, bindings, &label())?;
                 Ok(((layout.clone(), bindings.into()), group))
             },
         )
+    }
+
+    /// Makes the groups of the last frame visible to [`BindGroupCache::check`].
+    pub(crate) fn settle(&mut self) {
+        self.0.merge_fresh();
+    }
+
+    /// Checks that the resources of all groups with the layout `old` can be bound with the layout `new`.
+    ///
+    /// # Errors
+    /// Returns the bindings and wgpu's reason.
+    pub(crate) fn check(
+        &self,
+        device: &Device,
+        old: &BindGroupLayout,
+        new: &BindGroupLayout,
+    ) -> Result<(), (Box<[(u32, Binding)]>, DeviceError)> {
+        let mut bound = self.0.keys().filter(|(layout, _)| layout == old);
+        bound.try_for_each(|(_, bindings)| {
+            create(device, new, bindings, "reload").map(drop).map_err(|error| (bindings.clone(), error))
+        })
     }
 
     /// Begins a frame. Drops groups that were not requested for `max_age` frames.
@@ -129,6 +142,20 @@ impl BindGroupCache {
     pub(crate) fn clear(&mut self) {
         self.0.clear();
     }
+}
+
+fn create(
+    device: &Device,
+    layout: &BindGroupLayout,
+    bindings: &[(u32, Binding)],
+    label: &str,
+) -> Result<BindGroup, DeviceError> {
+    let entries: Vec<_> =
+        bindings.iter().map(|(binding, b)| BindGroupEntry { binding: *binding, resource: b.resource() }).collect();
+    let scopes = ErrorScopes::open(device);
+    let group = device.create_bind_group(&BindGroupDescriptor { label: Some(label), layout, entries: &entries });
+    scopes.close("a bind group")?;
+    Ok(group)
 }
 
 #[cfg(test)]

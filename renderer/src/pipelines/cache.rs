@@ -4,6 +4,8 @@ use crate::cache::{Cache, CacheCounts, LastEntry};
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::execute::targets::Targets;
 use crate::hash::KeyHashBuilder;
+use crate::pipelines::bind_groups::BindGroupCache;
+use crate::pipelines::compared_sources::ComparedSources;
 use crate::pipelines::key::{Fixed, RasterKey, StagesKey, fixed};
 use crate::pipelines::pipeline::{ComputePipeline, Pipeline, RasterPipeline};
 use crate::pipelines::shader::{Compiled, Shader, ShaderError, ShaderModules};
@@ -121,23 +123,48 @@ impl Pipelines {
     }
 
     /// Replaces the source of `shader` and recreates its pipelines. Returns their number. Nothing changes if one of
-    /// them fails.
+    /// them fails, or if the source expects other bindings, entry points or vertex inputs.
     ///
     /// # Errors
-    /// Fails with [`ShaderError`] if the source does not compile or does not match a pipeline.
-    pub(crate) fn reload(&mut self, device: &Device, shader: &Shader<'_>, text: &str) -> Result<usize, ShaderError> {
+    /// Fails with [`ShaderError`] if the source does not compile or does not match the old source or a pipeline.
+    pub(crate) fn reload(
+        &mut self,
+        device: &Device,
+        shader: &Shader<'_>,
+        text: &str,
+        groups: &BindGroupCache,
+    ) -> Result<usize, ShaderError> {
         let module = ShaderModules::compile(device, shader.name(), text)?;
+        // Recorders are written for the original source, even if it was reloaded before.
+        let compared = ComparedSources::new(shader, text)?;
         let (mut raster, mut compute) = (std::mem::take(&mut self.raster), std::mem::take(&mut self.compute));
         let rasters = raster.rebuild(
             |key| key.stages.shader == shader.hash(),
-            |key| key.with(*shader, |raster, fixed| self.make_raster(device, raster, &module, fixed)),
+            |key, old| {
+                key.with(*shader, |raster, fixed| {
+                    let entries: Vec<_> = [Some(raster.vertex), raster.fragment].into_iter().flatten().collect();
+                    compared.check(&entries, raster.constants.0, raster.groups.is_empty())?;
+                    let made = self.make_raster(device, raster, &module, fixed);
+                    let new = made.map_err(|error| compared.explain(raster.vertex, raster.fragment, error))?;
+                    compared.check_bound(device, groups, old, &new)?;
+                    Ok(new)
+                })
+            },
         );
         let computes = compute.rebuild(
             |key| key.shader == shader.hash(),
-            |key| key.with(*shader, |compute| self.make_compute(device, compute, &module)),
+            |key, old| {
+                key.with(*shader, |compute| {
+                    compared.check(&[compute.entry], compute.constants.0, compute.groups.is_empty())?;
+                    let new = self.make_compute(device, compute, &module)?;
+                    compared.check_bound(device, groups, old, &new)?;
+                    Ok(new)
+                })
+            },
         );
         (self.raster, self.compute) = (raster, compute);
         let (rasters, computes) = (rasters?, computes?);
+        compared.check_others()?;
         let rebuilt = rasters.len() + computes.len();
         self.raster.replace(rasters);
         self.compute.replace(computes);

@@ -60,6 +60,11 @@ impl<P> Pipeline<P> {
         Self(Arc::new(Made { pipeline, source, groups }))
     }
 
+    /// Returns the number of bind groups.
+    pub(crate) fn groups(&self) -> usize {
+        self.0.groups.len()
+    }
+
     /// Returns bind group `index` of the pipeline, for [`Cx::bind_group`](crate::Cx::bind_group). Creating the group
     /// fails if the pipeline has no group with this index.
     pub fn group(&self, index: usize) -> Group<'_> {

@@ -91,6 +91,21 @@ pub enum ShaderError {
         /// Reason given by wgpu.
         message: String,
     },
+    /// A new source does not fit the recorders of the old one, which stays in use.
+    #[error(
+        "shader `{name}` keeps its old source: {place} would change from {old} to {new}; restart the program with a \
+         recorder that fits"
+    )]
+    Reload {
+        /// Name of the shader.
+        name: String,
+        /// Entry points, binding, vertex inputs or outputs that would change.
+        place: String,
+        /// Declaration in the old source.
+        old: String,
+        /// Declaration in the new source.
+        new: String,
+    },
     /// The device failed.
     #[error(transparent)]
     Device(DeviceError),

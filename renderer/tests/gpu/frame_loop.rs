@@ -1,6 +1,6 @@
 //! The frame loop: what it keeps, which frames it skips, and how it continues after errors.
 
-use crate::bench::{GREEN, RED, TestResult, fill_full, on_every_device};
+use crate::bench::{Bench, GREEN, RED, TestResult, fill_full, on_every_device};
 use framegraph::{
     Alias, Counts, DeclareError, Entry, Exit, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, Warning,
 };
@@ -191,6 +191,56 @@ fn a_loop_queues_at_most_the_maximum_of_frames() -> TestResult {
         let flight = frames.frames_in_flight();
         assert_eq!((flight.queued(), flight.latency().map(|l| l.count)), (0, Some(ran)));
         assert!(flight.waits() <= ran as u64, "one for each frame at most");
+        Ok(())
+    })
+}
+
+/// World that borrows, and that threads cannot share.
+struct Borrowing<'a> {
+    colors: &'a [[f32; 4]],
+    used: std::cell::Cell<usize>,
+}
+
+/// A world may borrow data that changes between frames. Neither executor nor frame loop need `'static` or `Sync`.
+#[test]
+fn the_world_may_borrow() -> TestResult {
+    on_every_device("the_world_may_borrow", |gpu, drawn| {
+        let (mut frames, mut bench) = (FrameLoop::<()>::new(gpu), Bench::new(gpu, 4, 4));
+        // Workers are not used for this world.
+        bench.executor.record_on(Some(framegraph_wgpu::Workers::with_threads(2)?));
+        let (mut colors, mut kept) = (Vec::new(), Frame::new());
+        for color in [RED, GREEN, RED] {
+            colors.push(color);
+            let world = Borrowing { colors: &colors, used: std::cell::Cell::new(0) };
+            let declare = |frame: &mut Frame<Borrowing<'_>>| {
+                let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+                let sum = frame.graph_mut().history("sum", desc, 1);
+                let age = frame.graph_mut().previous(sum, 1)?;
+                let accesses = |p: &mut PassBuilder<'_>| Ok((p.sampled(age)?, p.color(sum, Intent::Overwrite)?));
+                let record = move |_: &(_, _), world: &Borrowing<'_>, cx: &mut Cx<'_>| {
+                    world.used.set(world.colors.len());
+                    assert_eq!(cx.is_valid(age)?, world.colors.len() > 1, "the history belongs to the kept frame");
+                    fill_full(cx, *world.colors.last().unwrap_or(&[0.0; 4]))
+                };
+                let (_, drawn) = frame.add_fn("fill", accesses, record)?;
+                frame.graph_mut().readback(drawn)?;
+                Ok::<_, DeclareError>(drawn)
+            };
+            let output = frames.run_for([4, 4], &world, |frame, _| declare(frame))?.ok_or("no texels")?;
+            assert_eq!(world.used.replace(0), colors.len());
+
+            let mut frame: Frame<Borrowing<'_>> = kept.for_world();
+            let picture = declare(&mut frame)?;
+            let options = framegraph::Options::for_frame(4, 4);
+            bench.executor.compile(frame.graph(), &options, &mut framegraph::Scratch::new(), &mut bench.plan)?;
+            bench.executor.execute(&bench.plan, &frame, &world, &bench.imports)?;
+            assert_eq!((world.used.get(), bench.executor.recording_threads()), (colors.len(), 1));
+            kept = frame.for_world::<()>();
+            if drawn {
+                let texture = frames.executor().texture(frames.plan(), output.io).ok_or("no picture")?;
+                assert_eq!([read_texture(gpu, texture)?.rgba()[0], bench.pixels(picture)?.rgba()[0]], [color; 2]);
+            }
+        }
         Ok(())
     })
 }

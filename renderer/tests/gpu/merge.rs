@@ -60,3 +60,47 @@ fn a_pass_without_a_recorder_is_named() -> TestResult {
     assert!(refused.is_err_and(|e| e.to_string().contains("pass `bare` has no recorder")));
     Ok(())
 }
+
+/// Each pass of a merged step is a debug group: a recorder can close it, and wgpu accepts this only if it is open. Passes
+/// of other steps are named by their render pass.
+#[test]
+fn every_pass_of_a_merged_step_has_a_debug_group() -> TestResult {
+    on_every_device("every_pass_of_a_merged_step_has_a_debug_group", |gpu, _| {
+        for (merge, accepted) in [(true, true), (false, false)] {
+            let mut bench = Bench::new(gpu, 8, 8);
+            bench.options.merge = merge;
+            let report = bench.run(|frame| {
+                let mut target = declare(frame)?;
+                for name in ["third", "fourth"] {
+                    target = frame.add_fn(
+                        name,
+                        |p| p.color(target, Intent::Modify),
+                        |_, (), cx| {
+                            let pass = cx.render_pass()?;
+                            pass.pop_debug_group();
+                            pass.push_debug_group("of the recorder");
+                            Ok(())
+                        },
+                    )?;
+                }
+                frame.graph_mut().readback(target)
+            });
+            assert_eq!(report.is_ok(), accepted, "{report:?}");
+        }
+        Ok(())
+    })
+}
+
+#[test]
+fn textures_have_the_names_of_their_resources() -> TestResult {
+    on_every_device("textures_have_the_names_of_their_resources", |gpu, _| {
+        let mut bench = Bench::new(gpu, 8, 8);
+        let target = bench.run(declare)?;
+        let texture = bench.executor.texture(&bench.plan, target).ok_or("no texture")?;
+        texture.destroy();
+        // wgpu tells the label in its error alone.
+        let refused = gpu.guard("a view", || texture.create_view(&Default::default())).map(|_| ());
+        assert!(refused.as_ref().is_err_and(|e| e.to_string().contains("'color'")), "{refused:?}");
+        Ok(())
+    })
+}

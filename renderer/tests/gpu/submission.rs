@@ -181,6 +181,40 @@ fn warm_up_creates_pipelines() -> TestResult {
     })
 }
 
+/// A frame is recorded into the caller's encoder, between commands of the caller.
+#[test]
+fn a_frame_is_recorded_into_the_callers_encoder() -> TestResult {
+    on_every_device("a_frame_is_recorded_into_the_callers_encoder", |gpu, drawn| {
+        let mut frames = FrameLoop::<()>::new(gpu);
+        let (mut copies, mut last) = (Vec::new(), None);
+        for color in [RED, GREEN] {
+            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("copy"),
+                size: 256,
+                usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            });
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let declared = frames.record_into([4, 1], &(), &mut encoder, |frame, _| filled(frame, color))?;
+            let target = declared.ok_or("no texels")?;
+            assert_eq!(frames.executor().executed(), frames.plan().counts());
+            let texture = frames.executor().texture(frames.plan(), target).ok_or("no texture")?;
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(256), rows_per_image: None };
+            let copied = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+            encoder.copy_texture_to_buffer(texture.as_image_copy(), copied, texture.size());
+            frames.submitted(gpu.queue.submit([encoder.finish()]));
+            copies.push((buffer, color));
+            last = Some(target);
+        }
+        assert_eq!((last.is_some(), frames.executor().objects().textures), (true, 1));
+        for (buffer, color) in copies.iter().filter(|_| drawn) {
+            let bytes = framegraph_wgpu::read_buffer(gpu, buffer, 256)?;
+            assert_eq!(bytes[..4], color.map(|channel| (255.0 * channel) as u8));
+        }
+        Ok(())
+    })
+}
+
 const TINT: Shader<'static> = Shader::new("tint", include_str!("tint.wgsl"));
 
 fn tinted(frame: &mut Frame, format: Format) -> Result<Texture, DeclareError> {
@@ -222,7 +256,7 @@ fn a_shader_is_reloaded_between_frames() -> TestResult {
         let other = TINT.text().replace("fs_main", "fs_other");
         let report = bench.executor.reload_shader(&TINT, &other);
         assert!(
-            matches!(&report, Err(ShaderError::Pipeline { message, .. }) if message.contains("fs_main")),
+            matches!(&report, Err(ShaderError::Reload { old, new, .. }) if old.contains("fs_main") && new.contains("fs_other")),
             "{report:?}"
         );
         shows(&mut bench, Format::Rgba8Unorm, GREEN)?;

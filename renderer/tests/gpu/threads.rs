@@ -60,6 +60,7 @@ fn bench(gpu: &framegraph_wgpu::Gpu, threads: usize) -> Result<Bench, Box<dyn st
     let mut bench = Bench::new(gpu, 16, 16);
     bench.executor =
         Executor::with(gpu, ExecutorOptions { timing: threads.is_multiple_of(2), ..ExecutorOptions::default() });
+    bench.frame.allow_threads();
     bench.executor.force_record_on(Workers::with_threads(threads)?);
     Ok(bench)
 }
@@ -132,6 +133,7 @@ fn errors_are_those_of_one_thread() -> TestResult {
 fn one_thread_never_splits_frames() -> TestResult {
     on_every_device("one_thread_never_splits_frames", |gpu, _| {
         let mut bench = Bench::new(gpu, 16, 16);
+        bench.frame.allow_threads();
         bench.executor.record_on(Some(Workers::with_threads(1)?));
         for _ in 0..40 {
             bench.run(|frame| chain(frame, [None; 2]))?;

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, TestResult, fill_full, on_adapter, skip};
 use framegraph::{DeclareError, Extent, Format, Intent, Texture, TextureDesc};
-use framegraph_wgpu::Frame;
+use framegraph_wgpu::{Frame, Times};
 
 fn declare(frame: &mut Frame, name: &str) -> Result<Texture, DeclareError> {
     let target = frame.graph_mut().texture("color", TextureDesc::new(Extent::FRAME, Format::Rgba16Float));
@@ -15,11 +15,14 @@ fn declare(frame: &mut Frame, name: &str) -> Result<Texture, DeclareError> {
 fn steps_are_timed_on_cpu_and_gpu() -> TestResult {
     on_adapter("steps_are_timed_on_cpu_and_gpu", |gpu| {
         let mut bench = Bench::new(gpu, 256, 256);
+        bench.run(|f| declare(f, "fill"))?;
+        let step = bench.plan.step_ids().next().ok_or("no step")?;
+        assert_eq!(bench.executor.timing().step(step), Times::default(), "off by default");
+        bench.executor.set_timing(true);
         for _ in 0..20 {
             bench.run(|f| declare(f, "fill"))?;
         }
         gpu.wait()?;
-        let step = bench.plan.step_ids().next().ok_or("no step")?;
         let times = bench.executor.catch_up()?.step(step);
         let cpu = times.cpu.ok_or("no CPU time")?;
         assert_eq!(cpu.count, 16, "the first four frames are left out");

@@ -86,6 +86,7 @@ fn a_trace_is_json_with_nested_events_on_both_sides() -> TestResult {
 fn no_trace_is_recorded_by_default() -> TestResult {
     let gpu = framegraph_wgpu::Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);
+    bench.executor.set_timing(true);
     bench.run(declare)?;
     assert!(bench.executor.timing().trace().is_none());
     assert!(bench.executor.timing().wgpu().is_none(), "the first frames are left out");

@@ -115,7 +115,7 @@ impl<'a> Studio<'a> {
         let world = World::new(self.gpu, &scene, lighting, [view], &mut progress::silent)?;
         let (frame, plan, output) = self.declared(&setup.settings, &scene, size_px)?;
         // Textures of old frames are freed; pipelines remain, since frames share them.
-        let options = ExecutorOptions { max_age: 4, ..ExecutorOptions::default() };
+        let options = ExecutorOptions { max_age: 4, timing: true, ..ExecutorOptions::default() };
         let executor = Executor::with(self.gpu, options);
         let settings = setup.settings;
         Ok(Ready { scene, moment, world, frame, plan, executor, output, size_px, settings, drawn: 0 })

@@ -133,6 +133,7 @@ const COPIES: &str = r#"(version: 1,
 
 fn copies() -> Result<Staged, Box<dyn Error>> {
     let mut frame = Frame::new();
+    frame.allow_threads();
     GraphFile::parse("copies.ron", COPIES)?.declare(&[], &Registry::new(), &mut frame)?;
     mock::add_recorders(&mut frame);
     Ok(Staged { label: "copies".to_owned(), frame, options: Options { frame: SIZE_PX, ..Options::default() } })

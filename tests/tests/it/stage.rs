@@ -17,6 +17,7 @@ use tests::stage::light_cache;
 /// Declares the standard frame with a readback of its picture.
 pub fn declared(settings: &Settings) -> (Frame<World>, FrameIo) {
     let mut frame = Frame::new();
+    frame.allow_threads();
     let output = frame.graph_mut().texture("output", TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb));
     let io = standard(&mut frame, settings, Target::from(output)).expect("the standard frame is sound");
     frame.graph_mut().readback(io.output).unwrap();

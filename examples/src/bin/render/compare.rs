@@ -69,7 +69,9 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
             let mut plan = Plan::new();
             let options = Options { inline, ..Options::for_frame(args.size_px[0], args.size_px[1]) };
             compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan).map_err(input)?;
-            variants.push(Variant { name, samples, frame, plan, executor: Executor::new(&gpu) });
+            let mut executor = Executor::new(&gpu);
+            executor.set_timing(true);
+            variants.push(Variant { name, samples, frame, plan, executor });
         }
     }
     let rounds = WARM_UP + args.frames;

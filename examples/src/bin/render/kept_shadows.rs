@@ -51,6 +51,7 @@ pub struct OwnResources<'a> {
 /// The error of a pass or of the device.
 pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: OwnResources<'_>) -> Result<Declared, Failure> {
     let (mut frame, mut imports, mut handles) = (Frame::new(), Imports::new(), settings.handles());
+    frame.allow_threads();
     facts.note(frame.graph_mut());
     if let Some(dirt) = own.dirt.filter(|_| settings.bloom.is_some()) {
         handles = dirt.declare(&mut frame, handles, &mut imports);

@@ -85,7 +85,7 @@ impl Prepared {
     pub fn options(&self, args: &Args) -> (Options, ExecutorOptions) {
         let [width, height] = args.size_px;
         let mut options = Options { inline: args.inline, alias: args.alias, ..Options::for_frame(width, height) };
-        let mut execute = ExecutorOptions::default();
+        let mut execute = ExecutorOptions { timing: true, ..ExecutorOptions::default() };
         args.debug.apply(&mut options, &mut execute);
         (options, execute)
     }

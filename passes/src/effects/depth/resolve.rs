@@ -79,7 +79,7 @@ pub(crate) fn can_read_samples(samples: u8, gpu: &Gpu) -> Result<(), PassError> 
 ///
 /// # Errors
 /// Fails if no stage has set the depth.
-pub fn single_sample_depth<W: ?Sized + 'static>(
+pub fn single_sample_depth<W: ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     which: DepthOf,

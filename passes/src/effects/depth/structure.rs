@@ -132,7 +132,7 @@ pub fn structure<W>(
     levels: u8,
 ) -> Result<Texture, StageError>
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
 {
     if let Some(structure) = handles.find(Slot::STRUCTURE) {
         return Ok(structure);

@@ -22,7 +22,7 @@ pub fn shadow_maps<W>(
     settings: &ShadowSettings,
 ) -> Result<Option<Texture>, DeclareError>
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
 {
     let ShadowSettings { cascades, map_texels, filter, .. } = *settings;
     if settings.layers() > 0 {
@@ -51,7 +51,7 @@ pub(super) fn draw_maps<W>(
     layers: impl Iterator<Item = ShadowLayer>,
 ) -> Result<Option<Texture>, DeclareError>
 where
-    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
 {
     let settings = *settings;
     let shadow = |layer, maps| Shadow { view, settings, layer, maps };
@@ -74,7 +74,7 @@ where
 }
 
 /// Declares a texture for all maps.
-fn made<W: ?Sized + 'static>(frame: &mut Frame<W>, settings: &ShadowSettings) -> Texture {
+fn made<W: ?Sized>(frame: &mut Frame<W>, settings: &ShadowSettings) -> Texture {
     let (desc, name) = maps_desc(settings);
     frame.graph_mut().texture(name, desc)
 }
@@ -82,7 +82,7 @@ fn made<W: ?Sized + 'static>(frame: &mut Frame<W>, settings: &ShadowSettings) ->
 /// Copies the result into its layer if it is not there yet, then blurs and halves it.
 fn filtered<W>(frame: &mut Frame<W>, shadow: Shadow, drawn: Texture) -> Result<Texture, DeclareError>
 where
-    W: AsRef<Programs> + AsRef<Views> + ?Sized + 'static,
+    W: AsRef<Programs> + AsRef<Views> + ?Sized,
 {
     let Shadow { view, settings, layer, maps } = shadow;
     let MomentSettings { samples, blur_texels, levels, .. } = settings.moments;

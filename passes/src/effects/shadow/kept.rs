@@ -100,7 +100,7 @@ impl KeptShadows {
         shadows: &ViewShadows,
     ) -> Result<Option<Texture>, KeptShadowsError>
     where
-        W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static,
+        W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
     {
         let settings = &shadows.settings;
         if settings.layers() == 0 {

@@ -108,7 +108,17 @@ impl Executor {
         [("views", views), ("bind groups", groups.counts()), ("pipelines", pipelines.counts())]
     }
 
-    /// Returns times of steps and frames.
+    /// Turns measurements of step times on or off ([`ExecutorOptions::timing`](crate::ExecutorOptions::timing)), from
+    /// the next frame on. Earlier measurements are removed.
+    pub fn set_timing(&mut self, on: bool) {
+        self.options.timing = on;
+        self.timing.set_enabled(on);
+        let measured = on || self.options.trace;
+        self.recording.set_measured(measured);
+        self.threads.set_measured(measured);
+    }
+
+    /// Returns times of steps and frames. Times of steps are measured after [`Executor::set_timing`].
     pub fn timing(&self) -> &Timing {
         &self.timing
     }

@@ -2,6 +2,7 @@
 
 use super::{Executor, check};
 use crate::device::pipeline_cache::{PipelineCacheError, cache_bytes, open_cache};
+use crate::execute::commands::Destination;
 use crate::execute::error::ExecuteError;
 use crate::execute::steps::Passes;
 use crate::frame::Frame;
@@ -53,7 +54,7 @@ impl Executor {
     ///
     /// # Errors
     /// Fails like [`Executor::execute`].
-    pub fn warm_up<W: ?Sized + Sync + 'static>(
+    pub fn warm_up<W: ?Sized>(
         &mut self,
         plan: &Plan,
         frame: &Frame<W>,
@@ -68,7 +69,7 @@ impl Executor {
             plan,
             &Passes { frame, world, extra: None },
             imports,
-            Some(&mut |step, pipelines| {
+            Destination::Stepwise(&mut |step, pipelines| {
                 done += 1;
                 let pass = plan.passes_of(step).first().map_or("", |m| plan.graph().pass_name(m.pass));
                 progress(WarmUpProgress { done, total, pass, pipelines: pipelines - before });
@@ -83,9 +84,13 @@ impl Executor {
     /// `shader`. Returns the number of recompiled pipelines.
     ///
     /// # Errors
-    /// Fails if the new source does not compile or does not match one of the pipelines. The old source stays in use.
+    /// Fails if the new source does not compile, does not match one of the pipelines, or does not fit the recorders
+    /// ([`ShaderError::Reload`]): it lacks an entry point, or expects other bindings, vertex inputs or outputs than
+    /// `shader`. The old source stays in use.
     pub fn reload_shader(&mut self, shader: &Shader<'_>, text: &str) -> Result<usize, ShaderError> {
-        self.caches.pipelines.reload(&self.gpu.device, shader, text)
+        let Self { gpu, caches, .. } = self;
+        caches.groups.settle();
+        caches.pipelines.reload(&gpu.device, shader, text, &caches.groups)
     }
 
     /// Uses a driver pipeline cache from now on, so that later runs compile faster. `earlier` is the result of

@@ -347,6 +347,7 @@ impl Imported {
 /// Creates a frame whose passes are recorded according to `spec`.
 fn recorded(graph: Graph) -> Frame<Stage> {
     let mut frame = Frame::from_graph(graph);
+    frame.allow_threads();
     for pass in frame.graph().pass_ids() {
         frame.set_recorder(pass, |pass, stage: &Stage, cx| {
             drop(cx.inlined());
