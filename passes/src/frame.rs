@@ -5,10 +5,10 @@
 //!
 //! | stage | passes | reads | provides |
 //! | --- | --- | --- | --- |
-//! | `shadow` | `shadow`, or one pass for each layer; `structure` for contact shadows | | shadow maps, structure |
-//! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | | structure, ambient occlusion |
-//! | `reflection` | `structure`, `reflection_depth`, `reflection`, `reflection_level`… | radiance of the previous frame | structure, reflections, target of the radiance |
-//! | `prepass` | `prepass`, `velocity`, if requested | | depth, motion vectors |
+//! | `shadow` | `shadow`, or one pass for each layer | | shadow maps |
+//! | `prepass` | `prepass`, `velocity`, if requested; `structure` for contact shadows and reflections | | depth, motion vectors, structure |
+//! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | depth | structure, ambient occlusion |
+//! | `reflection` | `reflection_depth`, `reflection`, `reflection_level`… | depth, radiance of the previous frame | structure, reflections, target of the radiance |
 //! | `color` | `color` | depth (with a prepass), shadow maps, structure, ambient occlusion, reflections | radiance, depth |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | picture behind refractive surfaces |
 //! | `transparent` | `transparent`; `blended/…` for order-independent transparency | all of the above | radiance, depth |
@@ -21,7 +21,9 @@
 //! | `fxaa` | `fxaa` | picture | picture |
 //! | `upscale` | `upscale`, `upscale_sharpen` | picture | picture |
 //!
-//! The *structure* is the depth pyramid of the visible surfaces. Every stage exists with every setting. A stage that a
+//! The *structure* is the depth pyramid of the visible surfaces, a copy of the depth of the prepass. With several
+//! samples per texel the structure is drawn, and the color pass tests its own depth. Geometry is thus drawn twice for
+//! the picture, and a third time for reflections or motion vectors. Every stage exists with every setting. A stage that a
 //! frame does not need declares no pass.
 //!
 //! This folder may use every other folder of the crate. Only [`feature_culling`](crate::feature_culling) and
@@ -64,7 +66,7 @@ use crate::light::shading::{Quality, Shading};
 use crate::program::Programs;
 use crate::settings::frame_index::FrameIndex;
 use crate::stages::{Handles, Slot, Stage, StageError, Stages};
-use before::{occlusion, prepass, reflection};
+use before::{full_structure, occlusion, prepass, reflection};
 use blended::{Blended, blended};
 use framegraph::{Extent, Format, Target, Texture};
 use framegraph_scene::{AlphaMode, Lobe, MaterialId, Scene, TransparencyMode};
@@ -115,7 +117,7 @@ pub struct Settings {
     /// Number of levels of the reflections, which blur them for rough surfaces; at most [`scene_levels`] of the size.
     #[cfg_attr(feature = "files", serde(skip))]
     pub reflection_levels: u8,
-    /// Number of levels of the structure, at most [`structure_levels`] of its size. Fewer levels are slower, but as
+    /// Number of levels of the structure for ambient occlusion, at most [`structure_levels`] of its size. Fewer levels are slower, but as
     /// accurate.
     #[cfg_attr(feature = "files", serde(skip))]
     pub structure_levels: u8,
@@ -267,9 +269,26 @@ impl Settings {
         self.moving && self.taa.is_some()
     }
 
-    /// Returns true if depth is drawn before the color pass.
+    /// Returns true if depth is drawn before the color pass. With several samples per texel, effects that read depth
+    /// draw it with one sample; a prepass would draw all geometry a third time.
     fn draws_prepass(&self) -> bool {
-        self.prepass || self.draws_velocity()
+        (self.prepass && (self.samples == 1 || !self.reads_structure())) || self.draws_velocity()
+    }
+
+    /// Returns true if contact shadows of the sun are traced.
+    fn has_contact_shadows(&self) -> bool {
+        self.shadows.is_some_and(|shadows| shadows.contact.is_some())
+    }
+
+    /// Returns the number of levels of the structure at full resolution.
+    fn full_levels(&self) -> u8 {
+        let occluded = self.occlusion.is_some_and(|own| own.occludes() && own.resolution == Resolution::Full);
+        if occluded { self.structure_levels } else { 1 }
+    }
+
+    /// Returns true if an effect reads the depth of the scene before the color pass.
+    pub(crate) fn reads_structure(&self) -> bool {
+        self.occlusion.is_some_and(|own| own.occludes()) || self.reflections.is_some() || self.has_contact_shadows()
     }
 
     /// Returns true if blended surfaces have separate passes.
@@ -295,12 +314,6 @@ impl Settings {
     /// Returns the technique for blended surfaces; `Sorted` if there are none, or if stencil needs their order.
     fn declared_transparency(&self) -> Transparency {
         if self.blended && !self.sorts_for_stencil() { self.transparency } else { Transparency::Sorted }
-    }
-
-    /// Returns the resolution and the number of levels of the structure, which all effects share.
-    fn structure(&self) -> (Resolution, u8) {
-        let resolution = self.occlusion.map_or(Resolution::Full, |occlusion| occlusion.resolution);
-        (resolution, self.structure_levels)
     }
 }
 
@@ -353,16 +366,17 @@ pub fn stages<W: StandardWorld + ?Sized>(settings: &Settings) -> Stages<W> {
     let apart = Blended { transparency, samples, shading, fog, after_blur };
     let glass = Glass { levels: scene_levels, layers: glass_layers, samples, shading, fog, transparency };
     Stages::of([
-        Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows, s.structure())),
-        // Declared before the prepass, so that no pass separates prepass and color pass: they share a step.
+        Stage::new("shadow", move |frame, handles| shadow(frame, handles, s.shadows)),
+        Stage::new("prepass", move |frame, handles| {
+            prepass(frame, handles, s.samples, [s.draws_prepass(), s.draws_velocity(), s.stencil])?;
+            full_structure(frame, handles, (s.has_contact_shadows() || s.reflections.is_some(), s.full_levels()))
+        }),
+        // If these stages declare no pass, prepass and color pass share a step.
         Stage::new("occlusion", move |frame, handles| {
             occlusion(frame, handles, s.occlusion, (s.structure_levels, s.shading.precision))
         }),
         Stage::new("reflection", move |frame, handles| {
-            reflection(frame, handles, s.reflections, s.structure(), (s.reflection_levels, s.hdr_format))
-        }),
-        Stage::new("prepass", move |frame, handles| {
-            prepass(frame, handles, s.samples, [s.draws_prepass(), s.draws_velocity(), s.stencil])
+            reflection(frame, handles, s.reflections, s.full_levels(), (s.reflection_levels, s.hdr_format))
         }),
         Stage::new("color", move |frame, handles| color(frame, handles, &s)),
         Stage::new("scene", move |frame, handles| scene(frame, handles, s.scene_levels)),
@@ -399,7 +413,6 @@ type Declared = Result<(), StageError>;
 
 fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles, settings: &Settings) -> Declared {
     let Settings { samples, shading, fog, blended, stencil, scene_levels, sky, hdr_format, .. } = *settings;
-    let contact_shadows = settings.shadows.is_some_and(|shadows| shadows.contact.is_some());
     let pass = Color {
         view: handles.view(),
         depth: match settings.draws_prepass() {
@@ -408,12 +421,12 @@ fn color<W: StandardWorld + ?Sized>(frame: &mut Frame<W>, handles: &mut Handles,
         },
         shadow: maps_of(handles),
         occlusion: handles.find(Slot::OCCLUSION),
-        structure: handles.find(Slot::STRUCTURE),
+        structure: handles.find(Slot::HALF_STRUCTURE),
+        contact_depth: handles.find(Slot::STRUCTURE).filter(|_| settings.has_contact_shadows()),
         reflections: match handles.find(Slot::REFLECTIONS) {
             Some(found) => Some([found, handles.get(Slot::HIT_DISTANCE)?]),
             None => None,
         },
-        contact_shadows,
         samples,
         stencil,
         blended,

@@ -16,6 +16,6 @@ mod select;
 mod settle;
 
 pub use groups::{FrameOption, GROUPS, Group, reference};
-pub use measured::{Choices, Measured, MeasuredError, MeasuredGroup, MeasuredOption, MeasuredPair};
+pub use measured::{Choices, Measured, MeasuredError, MeasuredGroup, MeasuredOption, MeasuredPair, MeasuredShare};
 pub use select::{Chosen, Offer, Offers, Pair};
 pub use settle::{Bound, Settled, Trial, settle};

@@ -40,14 +40,14 @@ pub struct Color {
     /// Ambient occlusion of opaque and masked surfaces: visibility in red; in format Rgba16Float, the bent normal in
     /// the other channels. Has the size of the depth, or is smaller.
     pub occlusion: Option<Texture>,
-    /// Depth pyramid of the scene. Required if the ambient occlusion is smaller than the depth, and for contact
-    /// shadows.
+    /// Depth pyramid that the ambient occlusion was computed from. Required if that is smaller than the depth.
     pub structure: Option<Texture>,
+    /// Depth of the scene with one sample per texel, at the size of the picture, for contact shadows of the sun. Used
+    /// with shadow maps.
+    pub contact_depth: Option<Texture>,
     /// Screen-space reflections with all levels written, and their hit distances. Replace reflections of the
     /// environment on opaque and masked surfaces.
     pub reflections: Option<[Texture; 2]>,
-    /// Adds contact shadows to the sun's shadow maps, if maps and structure are given.
-    pub contact_shadows: bool,
     /// Samples per texel, as in the depth; above 1, the result is resolved.
     pub samples: u8,
     /// Gives the pass's own depth a stencil aspect, for materials that use stencil. A prepass's depth brings its own.
@@ -93,8 +93,8 @@ impl Color {
             shadow: None,
             occlusion: None,
             structure: None,
+            contact_depth: None,
             reflections: None,
-            contact_shadows: false,
             samples: 1,
             stencil: false,
             blended: false,
@@ -149,8 +149,7 @@ impl Pass for Color {
         };
         let stencil = pass.desc(depth)?.format.has_stencil();
         let shadow = ShadowInput::declare(self.shadow, pass)?;
-        let shown = self.structure.filter(|_| self.contact_shadows);
-        let contact = shown.map(|structure| pass.sampled(structure.mip(0))).transpose()?;
+        let contact = self.contact_depth.map(|depth| pass.sampled(depth.mip(0))).transpose()?;
         let occlusion = self.occlusion.map(|picture| self.occlusion_input(picture, extent, pass)).transpose()?;
         let reflections = match self.reflections {
             Some([picture, ways]) => Some([pass.sampled(picture)?, pass.sampled(ways)?]),

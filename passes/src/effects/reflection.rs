@@ -17,7 +17,7 @@ pub use pass::{Reflection, ReflectionIo};
 pub use settings::ReflectionSettings;
 
 use crate::effects::depth::prepass::Prepass;
-use crate::effects::depth::structure::{Resolution, structure};
+use crate::effects::depth::structure::{Resolution, drawn_depth, structure};
 use crate::effects::transmission::SceneLevel;
 use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::Views;
@@ -53,7 +53,10 @@ where
     let structure = structure(frame, handles, resolution, structure_levels)?;
     let hdr = frame.graph_mut().history("hdr", TextureDesc::new(extent, format), 1);
     let earlier = frame.graph_mut().previous(hdr, 1)?;
-    let depth = frame.add("reflection_depth", Prepass { view, extent, samples: 1, stencil: false })?;
+    let depth = match drawn_depth(frame, handles) {
+        Some(depth) => depth,
+        None => frame.add("reflection_depth", Prepass { view, extent, samples: 1, stencil: false })?,
+    };
     let pass = Reflection { view, structure, depth, earlier, levels, settings: *settings };
     let ReflectionIo { mut reflections, ways, .. } = frame.add("reflection", pass)?;
     for level in 1..levels {

@@ -28,6 +28,10 @@ pub(super) fn rules(case: &RuleInput<'_>, facts: &mut Facts) {
         facts.rows.push(kept("velocity is drawn over its depth".into()));
         return;
     }
+    if case.settings.samples == 1 && case.settings.reads_structure() {
+        facts.rows.push(kept("other effects read its depth".into()));
+        return;
+    }
     let most = case.seen.most(|lists| lists.opaque.len() + lists.mask.len());
     if most > MAX_INSTANCES {
         facts.rows.push(kept(format!("{most} instances are seen, and of more than {MAX_INSTANCES} nothing is known")));

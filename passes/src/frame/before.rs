@@ -1,7 +1,7 @@
 //! Stages before surfaces are shaded: depth, ambient occlusion, reflections.
 
 use crate::effects::depth::prepass::Prepass;
-use crate::effects::depth::structure::Resolution;
+use crate::effects::depth::structure::{Resolution, structure};
 use crate::effects::occlusion;
 use crate::effects::occlusion::OcclusionSettings;
 use crate::effects::reflection::{ReflectionSettings, reflections};
@@ -47,17 +47,29 @@ pub(super) fn occlusion<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?S
     }
 }
 
+/// Declares the structure at full resolution, if contact shadows or reflections read it.
+pub(super) fn full_structure<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+    frame: &mut Frame<W>,
+    handles: &mut Handles,
+    (wanted, levels): (bool, u8),
+) -> Result<(), StageError> {
+    if wanted {
+        structure(frame, handles, Resolution::Full, levels)?;
+    }
+    Ok(())
+}
+
 /// Declares reflections, unless a stage has already provided them.
 pub(super) fn reflection<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     settings: Option<ReflectionSettings>,
-    structure: (Resolution, u8),
+    structure_levels: u8,
     (levels, format): (u8, Format),
 ) -> Result<(), StageError> {
     match settings {
         Some(own) if handles.find(Slot::REFLECTIONS).is_none() => {
-            reflections(frame, handles, &own, structure, levels, format)
+            reflections(frame, handles, &own, (Resolution::Full, structure_levels), levels, format)
         }
         _ => Ok(()),
     }

@@ -1,6 +1,5 @@
 //! The stage that draws shadow maps.
 
-use crate::effects::depth::structure::{Resolution, structure};
 use crate::effects::shadow::{maps_slot, shadow_maps};
 use crate::gpu_scene::shadow_views::ShadowSettings;
 use crate::gpu_scene::upload::GpuScene;
@@ -10,20 +9,15 @@ use crate::stages::{Handles, Slot, StageError};
 use framegraph::Texture;
 use framegraph_wgpu::Frame;
 
-/// Declares shadow maps, unless a stage has already provided them, and the structure if contact shadows are on.
+/// Declares shadow maps, unless a stage has already provided them.
 pub(super) fn shadow<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     settings: Option<ShadowSettings>,
-    (resolution, levels): (Resolution, u8),
 ) -> Result<(), StageError> {
     let Some(shadows) = settings.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
     if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
         handles.set(maps_slot(&shadows), maps);
-    }
-    // Declared before the prepass, so that no pass separates prepass and color pass.
-    if shadows.contact.is_some() {
-        structure(frame, handles, resolution, levels)?;
     }
     Ok(())
 }

@@ -29,6 +29,9 @@ pub struct Group {
     pub effects: &'static [Effect],
     /// Options from the cheapest to the finest, which is the reference's.
     pub options: &'static [FrameOption],
+    /// Share of typical scenes in which the options differ visibly, 0 to 1. [`Preset`](crate::Preset) multiplies mean
+    /// squared errors with it, since it is chosen without a scene. An estimate, not a measurement.
+    pub seen_in: f64,
 }
 
 const fn option(name: &'static str, apply: fn(&mut FrameSettings)) -> FrameOption {
@@ -45,6 +48,7 @@ pub const GROUPS: [Group; 8] = [
             option("FXAA", |f| (f.settings.samples, f.settings.fxaa) = (1, true)),
             option("4 samples", |f| (f.settings.samples, f.settings.fxaa) = (4, false)),
         ],
+        seen_in: 1.0,
     },
     Group {
         name: "sun-shadows",
@@ -60,6 +64,7 @@ pub const GROUPS: [Group; 8] = [
                 sun_maps(f, 4, 2048, ShadowFilter::Pcss, Some(ContactShadows::FILAMENT));
             }),
         ],
+        seen_in: 1.0,
     },
     Group {
         name: "occlusion",
@@ -76,6 +81,7 @@ pub const GROUPS: [Group; 8] = [
             }),
             option("GTAO", |f| f.settings.occlusion = Some(OcclusionSettings::GTAO)),
         ],
+        seen_in: 1.0,
     },
     Group {
         name: "shading",
@@ -85,6 +91,7 @@ pub const GROUPS: [Group; 8] = [
             option("high", |f| shading(f, Quality::High)),
             option("ultra", |f| shading(f, Quality::Ultra)),
         ],
+        seen_in: 1.0,
     },
     Group {
         name: "precision",
@@ -93,6 +100,7 @@ pub const GROUPS: [Group; 8] = [
             option("f16", |f| f.settings.shading.precision = Precision::Half),
             option("f32", |f| f.settings.shading.precision = Precision::Full),
         ],
+        seen_in: 1.0,
     },
     Group {
         name: "radiance",
@@ -101,6 +109,7 @@ pub const GROUPS: [Group; 8] = [
             option("Rg11b10Ufloat", |f| f.settings.hdr_format = Format::Rg11b10Ufloat),
             option("Rgba16Float", |f| f.settings.hdr_format = Format::Rgba16Float),
         ],
+        seen_in: 1.0,
     },
     Group {
         name: "reflections",
@@ -109,6 +118,8 @@ pub const GROUPS: [Group; 8] = [
             option("none", |f| f.settings.reflections = None),
             option("of the picture", |f| f.settings.reflections = Some(ReflectionSettings::DEFAULT)),
         ],
+        // Smooth floors and water.
+        seen_in: 1.0 / 8.0,
     },
     Group {
         name: "glass-layers",
@@ -118,6 +129,8 @@ pub const GROUPS: [Group; 8] = [
             option("2", |f| f.settings.glass_layers = 2),
             option("3", |f| f.settings.glass_layers = 3),
         ],
+        // Glass behind glass.
+        seen_in: 1.0 / 16.0,
     },
 ];
 

@@ -16,6 +16,9 @@ pub struct Measured {
     pub groups: Vec<MeasuredGroup>,
     /// Pairs of options whose errors are not additive.
     pub pairs: Vec<MeasuredPair>,
+    /// Options with passes of their own, and the share of a frame that these passes take.
+    #[cfg_attr(feature = "files", serde(default))]
+    pub shares: Vec<MeasuredShare>,
 }
 
 /// A group of options.
@@ -50,6 +53,18 @@ pub struct MeasuredPair {
     pub options: [[String; 2]; 2],
     /// Mean square difference beyond the sum of both, in squared 8-bit steps.
     pub squares: f64,
+}
+
+/// Time of an option's own passes in a frame of 1280×720 pixels.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct MeasuredShare {
+    /// Group and option.
+    pub option: [String; 2],
+    /// Built-in scene in which the passes take the largest share.
+    pub scene: String,
+    /// Their share of the time of all passes, 0 to 1.
+    pub share: f64,
 }
 
 /// Groups to choose from, each with its options.
@@ -110,6 +125,12 @@ impl Measured {
         own.options.iter().find(|own| own.name == option.name)
     }
 
+    /// Returns the share of a frame that the option's own passes take; 0 if it is not measured.
+    pub fn share(&self, group: &Group, option: &FrameOption) -> f64 {
+        let own = self.shares.iter().find(|own| own.option == [group.name, option.name]);
+        own.map_or(0.0, |own| own.share)
+    }
+
     /// Returns times and errors of the options, scaled to the times in milliseconds of the fastest frame and of the
     /// reference. Differences between options scale in proportion.
     pub fn offers(&self, choices: &Choices, fastest_ms: f64, reference_ms: f64) -> Offers {
@@ -160,7 +181,13 @@ mod tests {
             options: [["edges", "none"], ["occlusion", "none"]].map(|p| p.map(str::to_owned)),
             squares: 1.5,
         };
-        Measured { fastest_ms: 5.0, reference_ms: 20.0, groups: GROUPS.iter().map(group).collect(), pairs: vec![pair] }
+        Measured {
+            fastest_ms: 5.0,
+            reference_ms: 20.0,
+            groups: GROUPS.iter().map(group).collect(),
+            pairs: vec![pair],
+            shares: Vec::new(),
+        }
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! Presets: frames chosen from a record of measurements, for four fractions of the finest frame's time.
 //!
 //! Each preset is the most accurate set of options of [`GROUPS`](crate::quality::GROUPS) within its fraction
-//! ([`Preset::share`]) of the time that the finest frame takes beyond the fastest. [`Preset::choose`] finds it in any
-//! record. [`Preset::frame`] has the choice for `docs/measurements/accuracy.json`. The record lacks punctual lights and levels of
+//! ([`Preset::share`]) of the time that the finest frame takes beyond the fastest. Errors count as often as typical
+//! scenes show them ([`Group::seen_in`]). Presets below ultra exclude options whose own passes take more than a third of
+//! a frame ([`Preset::MAX_PASSES`]). [`Preset::choose`] finds the set in any record. [`Preset::frame`] has the choice for `docs/measurements/accuracy.json`. The record lacks punctual lights and levels of
 //! detail: the number of their shadow maps and the LOD error are set by hand.
 
 mod chosen;
@@ -17,11 +18,11 @@ use crate::quality::{FrameOption, Group, Measured, MeasuredError};
 pub enum Preset {
     /// For phones.
     Low,
-    /// One sample, and ambient occlusion at half resolution.
+    /// One sample, a shadow map and ambient occlusion.
     Medium,
-    /// Four samples, three cascades, ambient occlusion.
+    /// Four samples, cascades, finer ambient occlusion.
     High,
-    /// All effects, for still pictures.
+    /// All effects with their finest options, for still pictures.
     Ultra,
 }
 
@@ -54,6 +55,9 @@ impl Preset {
         }
     }
 
+    /// Largest share of a frame's time that the passes of one option may take, except in [`Preset::Ultra`].
+    pub const MAX_PASSES: f64 = 1.0 / 3.0;
+
     /// Returns the option that a record chooses for each of its groups, among options for which `has` returns true
     /// (the device supports them).
     ///
@@ -65,9 +69,21 @@ impl Preset {
         has: impl Fn(&FrameOption) -> bool,
     ) -> Result<Vec<(&'static Group, &'static FrameOption)>, MeasuredError> {
         let choices = measured.choices(&Facts::default(), has)?;
-        let offers = measured.offers(&choices, measured.fastest_ms, measured.reference_ms);
+        let mut offers = measured.offers(&choices, measured.fastest_ms, measured.reference_ms);
+        for ((group, _), own) in choices.iter().zip(&mut offers.groups) {
+            own.iter_mut().for_each(|offer| offer.squares *= group.seen_in);
+        }
         let [fastest, finest] = [offers.fastest(), offers.finest()].map(|set| offers.predicted(&set).ms);
         let most_ms = fastest + self.share() * (finest - fastest);
+        if self != Self::Ultra {
+            for ((group, options), own) in choices.iter().zip(&mut offers.groups) {
+                for (option, offer) in options.iter().zip(own) {
+                    if measured.share(group, option) > Self::MAX_PASSES {
+                        offer.ms = f64::INFINITY;
+                    }
+                }
+            }
+        }
         // Rounding must not exclude the finest set.
         let set = offers.within_ms(most_ms * (1.0 + 1e-9)).map_or_else(|| offers.fastest(), |set| set.options);
         Ok(choices.into_iter().zip(set).map(|((group, options), index)| (group, options[index])).collect())

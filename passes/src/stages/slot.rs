@@ -34,11 +34,13 @@ impl Slot {
     /// Reversed depth of everything drawn so far, with the samples of the frame. For one sample per texel see
     /// [`single_sample_depth`](crate::effects::depth::resolve::single_sample_depth).
     pub const DEPTH: Self = Self::new("depth", Holds::DepthSamples);
-    /// Pyramid of the reversed depth of opaque surfaces, with one sample per texel. The first stage that needs it
-    /// declares it; see [`structure`](crate::effects::depth::structure::structure).
+    /// Pyramid of the reversed depth of opaque surfaces, with one sample per texel, at the size of the view's pictures.
+    /// The first stage that needs it declares it; see [`structure`](crate::effects::depth::structure::structure).
     pub const STRUCTURE: Self = Self::new("structure", Holds::Depth);
+    /// Pyramid of reversed depth as [`Slot::STRUCTURE`], at half the width and height.
+    pub const HALF_STRUCTURE: Self = Self::new("half_structure", Holds::Depth);
     /// Ambient occlusion: visibility, 0 to 1, in red. In format Rgba16Float, the other channels hold the bent normal in
-    /// world space. If smaller than the view's pictures, it needs [`Slot::STRUCTURE`].
+    /// world space. If smaller than the view's pictures, it needs [`Slot::HALF_STRUCTURE`].
     pub const OCCLUSION: Self = Self::new("occlusion", Holds::Color);
     /// Pyramid of screen-space reflections: radiance premultiplied by its weight, and the weight in alpha. Has the size
     /// of the view's pictures.

@@ -15,7 +15,7 @@ const ENTRY_POINTS: &[(&str, &[&str])] = &[
     ("color", &["vs_main", "fs_main", "fs_weighted", "fs_absorbance", "fs_moments"]),
     ("blended", &["vs_main", "fs_main", "fs_samples"]),
     ("reflection", &["vs_main", "fs_main"]),
-    ("structure", &["vs_main", "fs_level"]),
+    ("structure", &["vs_main", "fs_level", "fs_copy", "fs_half"]),
     ("occlusion", &["vs_main", "fs_sao", "fs_gtao"]),
     ("bilateral", &["vs_main", "fs_main"]),
     ("scene", &["vs_main", "fs_copy", "fs_copy_samples", "fs_level"]),

@@ -6,11 +6,9 @@
 @if(OCCLUSION_UPSAMPLED)
 import package::interface::frame::frame;
 @if(OCCLUSION_UPSAMPLED)
-import package::interface::structure::{structure, structure_depth};
+import package::interface::structure::structure;
 @if(OCCLUSION_UPSAMPLED)
 import package::lib::bilateral::bilateral_weight;
-@if(OCCLUSION_UPSAMPLED)
-import package::lib::unproject::view_z;
 
 /// The texture also holds the mean open direction, whose cone occludes reflections.
 override BENT_NORMALS: bool = false;
@@ -43,6 +41,9 @@ fn screen_occlusion(position: vec4<f32>, depth_slope: vec2<f32>) -> vec4<f32> {
         dot(vec3<f32>(m[0].w, m[1].w, m[2].w), back),
         m[3].w,
     );
+    // Meters per depth, divided by the threshold: the slope of `view_z`.
+    let ahead = position.z * row.z - row.x;
+    let spread = (row.x * row.w - row.y * row.z) / (ahead * ahead * UPSAMPLED_THRESHOLD_M);
     let size = vec2<f32>(textureDimensions(ambient_occlusion));
     let pixels = frame.viewport_size_px / size;
     let at = position.xy / pixels - 0.5;
@@ -53,16 +54,14 @@ fn screen_occlusion(position: vec4<f32>, depth_slope: vec2<f32>) -> vec4<f32> {
     for (var i = 0u; i < 4u; i++) {
         let step = vec2<f32>(f32(i & 1u), f32(i >> 1u));
         let texel = clamp(corner + step, vec2<f32>(0.0), size - 1.0);
-        let depth = structure_depth(vec2<i32>(texel));
+        let depth = textureLoad(structure, vec2<i32>(texel), 0).r;
         let expected = position.z + dot(depth_slope, (texel + 0.5) * pixels - position.xy);
-        var near = 0.0;
-        if depth > 0.0 && expected > 0.0 {
-            let apart = view_z(depth, row) - view_z(expected, row);
-            near = bilateral_weight(apart, UPSAMPLED_THRESHOLD_M);
-        }
+        // The background has depth 0, and is far from every surface.
+        let near = bilateral_weight((depth - expected) * spread, 1.0);
         let bilinear = mix(1.0 - share, share, step);
         let weight = bilinear.x * bilinear.y * max(near, 1e-4);
-        sum += weight * textureLoad(ambient_occlusion, vec2<i32>(texel), 0);
+        let found = textureLoad(ambient_occlusion, vec2<i32>(texel), 0);
+        sum += weight * select(vec4<f32>(found.r), found, BENT_NORMALS);
         total += weight;
     }
     return sum / max(total, 1e-8);

@@ -35,8 +35,9 @@ fn structure_position(texel: vec2<i32>, depth: f32, projection: Projection) -> v
 /// Returns the surface at a point in texels of level 0, read from `level`. The position is that of
 /// the texel whose depth was read.
 fn structure_tap(at: vec2<f32>, level: i32, projection: Projection) -> StructureTap {
-    let last = vec2<i32>(textureDimensions(structure, level)) - 1;
-    let coarse = clamp(vec2<i32>(floor(at / f32(1 << u32(level)))), vec2<i32>(0), last);
+    let size = vec2<i32>(textureDimensions(structure)) >> vec2<u32>(u32(level));
+    let last = max(size, vec2<i32>(1)) - 1;
+    let coarse = clamp(vec2<i32>(floor(at)) >> vec2<u32>(u32(level)), vec2<i32>(0), last);
     let depth = textureLoad(structure, coarse, level).r;
     if depth == 0.0 {
         return StructureTap(vec3<f32>(0.0), false);

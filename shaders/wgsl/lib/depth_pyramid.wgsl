@@ -8,13 +8,14 @@ fn finer_texel(texel: vec2<i32>) -> vec2<i32> {
 }
 
 /// Returns the texel of level 0 that a texel of `level` is copied from. Using its depth at another
-/// position tilts surfaces and shadows flat ones.
+/// position tilts surfaces and shadows flat ones. The lowest bits of the texel alternate below it,
+/// as `finer_texel` exchanges them at each level.
 fn finest_texel(texel: vec2<i32>, level: i32) -> vec2<i32> {
-    var fine = texel;
-    for (var i = 0; i < level; i++) {
-        fine = finer_texel(fine);
-    }
-    return fine;
+    let rest = u32(31 - level);
+    let first = i32((0xaaaaaaaau >> rest) >> 1u);
+    let second = i32((0x55555555u >> rest) >> 1u);
+    let odd = texel & vec2<i32>(1);
+    return (texel << vec2<u32>(u32(level))) + first * odd.yx + second * odd;
 }
 
 /// Returns the level to read at a distance from the center, in pixels: its texel size is an eighth

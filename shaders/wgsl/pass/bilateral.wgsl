@@ -9,7 +9,6 @@ import package::interface::structure::{structure, structure_depth};
 import package::lib::bilateral::bilateral_weight;
 import package::lib::depth_normal::continues_ahead;
 import package::lib::fullscreen::fullscreen_position;
-import package::lib::unproject::view_z;
 
 /// Settings. Mirrored by `layout::BilateralUniforms`.
 struct BilateralUniforms {
@@ -25,6 +24,8 @@ struct BilateralUniforms {
 
 /// Number of samples on each side, at most 12.
 override REACH: i32 = 6;
+/// Blurs all four channels, otherwise only red.
+override ALL_CHANNELS: bool = false;
 
 @group(0) @binding(0) var<uniform> bilateral: BilateralUniforms;
 /// Visibility in red; read without filtering.
@@ -43,31 +44,44 @@ fn slope(texel: vec2<i32>, here: f32) -> f32 {
     return select(here - back.y, ahead.x - here, continues_ahead(back, here, ahead));
 }
 
+/// Returns a texel of the input.
+fn occlusion_at(texel: vec2<i32>) -> vec4<f32> {
+    let found = textureLoad(occlusion_in, texel, 0);
+    if ALL_CHANNELS {
+        return found;
+    }
+    return vec4<f32>(found.r, 0.0, 0.0, 0.0);
+}
+
 @fragment
 fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let texel = vec2<i32>(position.xy);
     let here = structure_depth(texel);
-    let middle = textureLoad(occlusion_in, texel, 0);
+    let middle = occlusion_at(texel);
     if here == 0.0 {
         return middle;
     }
     let last = vec2<i32>(textureDimensions(occlusion_in)) - 1;
     let step = slope(texel, here);
+    // The distance of two depths a and b is (a - b) · spread / ((a · z - x) · (b · z - x)) (`view_z`).
+    let row = bilateral.depth;
+    let spread = (row.x * row.w - row.y * row.z) / bilateral.threshold_m;
     var sum = middle * bilateral.weights[0].x;
     var total = bilateral.weights[0].x;
     for (var i = 1; i <= REACH; i++) {
         let weight = bilateral.weights[i >> 2u][i & 3];
         for (var side = -1; side <= 1; side += 2) {
             let at = texel + side * i * bilateral.axis;
-            let depth = structure_depth(at);
+            let held = clamp(at, vec2<i32>(0), last);
+            let depth = textureLoad(structure, held, 0).r;
             // Extrapolated depth of the surface; invalid once its line has passed the far plane.
             let expected = here + f32(side * i) * step;
-            if depth > 0.0 && expected > 0.0 && all(at >= vec2<i32>(0)) && all(at <= last) {
-                let apart = view_z(depth, bilateral.depth) - view_z(expected, bilateral.depth);
-                let w = weight * bilateral_weight(apart, bilateral.threshold_m);
-                sum += w * textureLoad(occlusion_in, at, 0);
-                total += w;
-            }
+            let places = (depth * row.z - row.x) * (expected * row.z - row.x);
+            let apart = (depth - expected) * spread / places;
+            let near = depth > 0.0 && expected > 0.0 && all(at == held);
+            let w = select(0.0, weight * bilateral_weight(apart, 1.0), near);
+            sum += w * occlusion_at(held);
+            total += w;
         }
     }
     return sum / total;

@@ -118,9 +118,8 @@ fn normal_of(texel: vec2<i32>, depth: f32, origin: vec3<f32>) -> vec3<f32> {
     return normalize_or(cross(down, right), vec3<f32>(0.0, 0.0, 1.0));
 }
 
-/// Reads the depth at a point in texels, `away` texels from the receiver.
-fn tap(at: vec2<f32>, away: f32) -> StructureTap {
-    let level = pyramid_level(away, settings.last_level);
+/// Reads the depth at a point in texels, from a level of the pyramid.
+fn tap(at: vec2<f32>, level: i32) -> StructureTap {
     if EXACT_TAPS {
         return structure_tap(at, level, settings.projection);
     }
@@ -163,7 +162,8 @@ fn scalable_obscurance(pixel: vec2<f32>, origin: vec3<f32>, normal: vec3<f32>) -
     var bent = normal;
     for (var i = 0.0; i < settings.taps; i += 1.0) {
         let away = max(sao_tap_distance(i, noise, settings.per_tap) * disc, 1.0);
-        let found = tap(pixel + away * direction, away);
+        let level = pyramid_level(away, settings.last_level);
+        let found = tap(pixel + away * direction, level);
         if found.hit {
             let v = found.position - origin;
             let term = sao_term(v, normal, settings.radius_m, bias_m, settings.min_sin2);
@@ -204,17 +204,21 @@ fn rises(v: vec3<f32>, normal: vec3<f32>, bias_m: f32) -> bool {
         && rise * rise >= vv * settings.min_sin2;
 }
 
-/// Updates a horizon with a sample at `angle`, both measured from the view direction, without sign.
-/// With Filament's falloff, distant samples count less, and samples below the horizon lower it
-/// slightly to approximate thin occluders.
-fn lower_horizon(horizon: f32, angle: f32, v: vec3<f32>) -> f32 {
+/// Updates the cosine of a horizon with a sample at distance v whose cosine is `found`, both
+/// measured from the view direction. With Filament's falloff, distant samples count less, and
+/// samples below the horizon lower it slightly to approximate thin occluders.
+fn raise_horizon(before: f32, found: f32, v: vec3<f32>) -> f32 {
     if !SMOOTH_FALLOFF {
-        return min(horizon, angle);
+        return max(before, found);
     }
-    let before = cos(horizon);
-    let found = cos(angle);
     let fade = saturate(2.0 * dot(v, v) / (settings.radius_m * settings.radius_m));
-    return acos_held(select(mix(before, found, 0.004), mix(found, before, fade), found > before));
+    return select(mix(before, found, 0.004), mix(found, before, fade), found > before);
+}
+
+/// Returns the angle of a horizon from its cosine, at most `open`.
+fn horizon_angle(cosine: f32, open: f32) -> f32 {
+    let angle = acos_held(cosine);
+    return select(min(angle, open), angle, SMOOTH_FALLOFF);
 }
 
 /// Computes obscurance from the horizons of slices.
@@ -237,33 +241,43 @@ fn horizon_obscurance(texel: vec2<i32>, origin: vec3<f32>, normal: vec3<f32>) ->
         let laid = vec2<f32>(dot(normal, s.along), dot(normal, view));
         let weight = length(laid);
         s.n = acos_held(laid.y / max(weight, 1e-6)) * select(-1.0, 1.0, laid.x >= 0.0);
-        var low = s.n - 0.5 * PI;
-        var high = s.n + 0.5 * PI;
+        // Cosines of the horizons: on the side of the slice's direction, and on the other.
+        var above = -sin(s.n);
+        var below = sin(s.n);
         var closed = 0u;
         for (var j = 0.0; j < settings.steps; j += 1.0) {
-            let share = (j + jitter) / settings.steps;
-            let away = max(pow(share, settings.step_power) * disc, 1.0 + j);
+            var share = (j + jitter) / settings.steps;
+            if settings.step_power != 1.0 {
+                share = pow(share, settings.step_power);
+            }
+            let away = max(share * disc, 1.0 + j);
+            let level = pyramid_level(away, settings.last_level);
             for (var side = -1.0; side <= 1.0; side += 2.0) {
                 // Image rows run downward.
                 let at = vec2<f32>(texel) + 0.5 + side * away * vec2<f32>(screen.x, -screen.y);
-                let found = tap(at, away);
+                let found = tap(at, level);
                 let v = found.position - origin;
                 if !found.hit || !rises(v, normal, bias_m) {
                     continue;
                 }
-                let front = slice_angle(s, v);
                 if BITMASK {
+                    let front = slice_angle(s, v);
                     let from_eye = select(-view, normalize_or(found.position, -view), central);
                     let back = slice_angle(s, v + settings.thickness_m * from_eye);
                     let shares = vec2<f32>(slice_share(front, s.n), slice_share(back, s.n));
                     closed |= sector_bits(min(shares.x, shares.y), max(shares.x, shares.y), jitter);
-                } else if front >= 0.0 {
-                    high = lower_horizon(high, front, v);
                 } else {
-                    low = -lower_horizon(-low, -front, v);
+                    let cosine = dot(v, view) * inverseSqrt(max(dot(v, v), 1e-20));
+                    if dot(v, s.along) >= 0.0 {
+                        above = raise_horizon(above, cosine, v);
+                    } else {
+                        below = raise_horizon(below, cosine, v);
+                    }
                 }
             }
         }
+        let high = horizon_angle(above, 0.5 * PI + s.n);
+        let low = -horizon_angle(below, 0.5 * PI - s.n);
         whole += weight * slice_whole(s.n);
         if BITMASK {
             light += weight * slice_whole(s.n) * f32(32u - countOneBits(closed)) / 32.0;

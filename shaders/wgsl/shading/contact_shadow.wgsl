@@ -4,12 +4,16 @@
 
 import package::interface::frame::frame;
 import package::interface::shadow::shadow;
-import package::interface::structure::structure;
 import package::lib::contact_shadow::{contact_hides, contact_fade};
 import package::lib::dither::interleaved_gradient_noise;
 import package::lib::fullscreen::uv_from_clip;
 import package::shading::object_light::receives_shadows;
 import package::shading::shadow_map::Receiver;
+
+/// Reversed depth of the visible surfaces, at the size of the picture. Bound as an unfilterable
+/// float.
+@if(CONTACT_SHADOWS)
+@group(0) @binding(44) var contact_depth: texture_2d<f32>;
 
 /// Number of steps of the ray.
 override CONTACT_STEPS: u32 = 8u;
@@ -41,7 +45,7 @@ fn contact_visibility(receiver: Receiver) -> f32 {
     let ray = screen_uvz(end_clip) - start;
     let step = 1.0 / f32(max(CONTACT_STEPS, 1u));
     let tolerance = abs(nearer_clip.z / nearer_clip.w - start.z) * step;
-    let size = vec2<f32>(textureDimensions(structure));
+    let size = vec2<f32>(textureDimensions(contact_depth));
     let pixels = frame.viewport_size_px / size;
     let own = vec2<i32>(receiver.pixel / pixels);
     var t = step * (interleaved_gradient_noise(receiver.pixel, 0u) + 0.5);
@@ -50,7 +54,7 @@ fn contact_visibility(receiver: Receiver) -> f32 {
         let texel = vec2<i32>(clamp(at.xy * size, vec2<f32>(0.0), size - 1.0));
         let aside = (vec2<f32>(texel) + 0.5) * pixels - at.xy * frame.viewport_size_px;
         let depth = at.z + dot(receiver.slope, aside);
-        let hides = contact_hides(textureLoad(structure, texel, 0).r, depth, tolerance);
+        let hides = contact_hides(textureLoad(contact_depth, texel, 0).r, depth, tolerance);
         if hides && any(texel != own) {
             return 1.0 - contact_fade(at.xy);
         }

@@ -210,7 +210,8 @@ fn declare(
     let mut occlusion = frame.add("occlusion", pass)?.occlusion;
     if let Some(blur) = settings.blur {
         for axis in [Axis::Across, Axis::Down] {
-            let pass = OcclusionBlur { view, structure, occlusion, blur, axis };
+            let bent_normals = settings.has_bent_normals();
+            let pass = OcclusionBlur { view, structure, occlusion, blur, axis, bent_normals };
             occlusion = frame.add("occlusion_blur", pass)?.blurred;
         }
     }

@@ -3,6 +3,7 @@
 use crate::stage::plan;
 use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
 use framegraph_passes::Settings;
+use framegraph_passes::effects::depth::structure::Resolution;
 use framegraph_passes::effects::occlusion::OcclusionSettings;
 use framegraph_passes::effects::reflection::ReflectionSettings;
 use framegraph_passes::gpu_scene::shadow_views::{ContactShadows, MomentSettings, ShadowFilter, ShadowSettings};
@@ -156,8 +157,12 @@ fn cascades_and_their_filters() {
         Counts { clears: more(3).clears + 4, discards: one.discards + 4, memoryless: one.memoryless + 4, ..more(3) };
     assert_eq!(with(moments), drawn);
     let blurred = ShadowSettings { moments: MomentSettings { blur_texels: 5.0, ..four.moments }, ..moments };
-    // The depth structure for contact shadows is drawn and stored once, as in Filament, for any number of cascades.
-    assert_eq!(with(ShadowSettings { contact: Some(ContactShadows::FILAMENT), ..four }), more(4));
+    // Contact shadows read a copy of the prepass's depth, for any number of cascades: depth and copy are stored, and
+    // the color pass loads the depth.
+    let contact = with(ShadowSettings { contact: Some(ContactShadows::FILAMENT), ..four });
+    let expected =
+        Counts { unresolves: 1, resolves: more(5).resolves, clears: more(3).clears, memoryless: 0, ..more(4) };
+    assert_eq!(contact, Counts { steps: expected.steps + 1, render_passes: expected.render_passes + 1, ..expected });
     let expected = Counts {
         resolves: drawn.resolves + 8,
         steps: drawn.steps + 8,
@@ -166,6 +171,36 @@ fn cascades_and_their_filters() {
         ..drawn
     };
     assert_eq!(with(blurred), expected);
+}
+
+/// Returns the passes of a frame that draw the scene's surfaces, without shadow maps.
+fn geometry_passes(settings: Settings) -> Vec<String> {
+    let plan = plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1]));
+    let graph = plan.graph();
+    let passes = graph.pass_ids().filter(|pass| match graph.pass_name(*pass) {
+        "prepass" | "reflection_depth" | "velocity" | "color" => true,
+        // A copy reads depth, and the drawn structure reads nothing.
+        "structure" => graph.accesses_of(*pass).len() == 1,
+        _ => false,
+    });
+    passes.map(|pass| graph.pass_name(pass).to_owned()).collect()
+}
+
+/// Effects that read the depth of the scene share that of the prepass, or draw it once with one sample per texel: the
+/// scene is drawn twice, whichever of them are on.
+#[test]
+fn geometry_is_drawn_twice() {
+    let half = OcclusionSettings { resolution: Resolution::Half, ..OcclusionSettings::SAO };
+    let contact = ShadowSettings { contact: Some(ContactShadows::FILAMENT), ..ShadowSettings::DEFAULT };
+    for occlusion in [None, Some(OcclusionSettings::SAO), Some(half)] {
+        for shadows in [ShadowSettings::DEFAULT, contact] {
+            for settings in [ONE, FOUR, Settings { prepass: false, ..ONE }] {
+                let own = Settings { occlusion, shadows: Some(shadows), ..settings };
+                let passes = geometry_passes(own);
+                assert!(passes.len() <= 2, "{passes:?} of {own:?}");
+            }
+        }
+    }
 }
 
 /// The plan states the reason for each effect with several passes, and nothing for absent ones.

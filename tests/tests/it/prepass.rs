@@ -107,12 +107,17 @@ fn a_prepass_is_drawn_where_it_saves_more_than_it_costs() {
     assert!(!decided(&Scene::default(), moving).0, "velocity is drawn over its depth");
 }
 
+/// A prepass does not change the picture. It costs a pass, and no load or store unless an effect reads its depth. With
+/// several samples such an effect draws depth itself, and no prepass is declared.
 #[test]
 fn a_prepass_changes_no_bit_and_moves_nothing() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("a_prepass_changes_no_bit_and_moves_nothing") else { return Ok(()) };
     let plain = Settings { shadows: Some(ShadowSettings::texels(128)), ..Settings::DEFAULT };
-    let around = Settings { occlusion: Some(OcclusionSettings::SAO), samples: 4, ..plain };
-    for (name, own) in [("boards", plain), ("boards", around), ("materials", around), ("glass", plain)] {
+    let occluded = Settings { occlusion: Some(OcclusionSettings::SAO), ..plain };
+    let around = Settings { samples: 4, ..occluded };
+    for (name, own) in
+        [("boards", plain), ("boards", occluded), ("boards", around), ("materials", occluded), ("glass", plain)]
+    {
         let scene = || if name == "boards" { Ok(boards()) } else { Scene::open(name, &mut progress::silent) };
         let size_px = [96, 64];
         let options = Options { inline: own.samples == 1, ..Options::for_frame(96, 64) };
@@ -122,10 +127,17 @@ fn a_prepass_changes_no_bit_and_moves_nothing() -> Result<(), Box<dyn Error>> {
         let (without, left_out) = set.shoot(&gpu, &shot(false))?;
         assert!(with == without, "{name}, {} samples: the picture is another", own.samples);
         let (more, less) = (drawn.counts(), left_out.counts());
-        assert_eq!((more.passes, more.resolves), (less.passes + 1, less.resolves), "{name}");
-        assert_eq!(more.unresolves, less.unresolves, "{name}");
-        assert_eq!(drawn.traffic(size_px), left_out.traffic(size_px), "{name}");
-        assert_eq!(drawn.memory().bytes, left_out.memory().bytes, "{name}");
+        let [passes, moved] = match (own.occlusion, own.samples) {
+            (None, _) => [1, 0],
+            (Some(_), 1) => [1, 1],
+            _ => [0, 0],
+        };
+        assert_eq!(more.passes, less.passes + passes, "{name}");
+        assert_eq!((more.unresolves, more.resolves), (less.unresolves + moved, less.resolves + moved), "{name}");
+        if moved == 0 {
+            assert_eq!(drawn.traffic(size_px), left_out.traffic(size_px), "{name}");
+            assert_eq!(drawn.memory().bytes, left_out.memory().bytes, "{name}");
+        }
     }
     Ok(())
 }

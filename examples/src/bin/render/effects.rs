@@ -17,7 +17,7 @@ pub const HELP: &str = "\
 EFFECTS
   --ao METHOD[:KEY=X,...]  screen-space ambient occlusion: off (default), sao (taps on a spiral) or gtao (horizon search in
                        slices, more accurate). resolution=full|half, radius=M (0.3), bias=X (relative to distance),
-                       intensity=X (1), power=X (1), horizon=DEG (minimum angle, 0), blur=off|medium|high,
+                       intensity=X (1), power=X (1), horizon=DEG (minimum angle, 0), blur=off|low|medium|high,
                        threshold=M (depth difference between surfaces, 0.05), normals=fine|coarse,
                        place=exact|filament (position of taps), bent-normals=on|off (for reflections),
                        cone=on|off (contact shadow of the sun). sao: quality=low|medium|high|ultra, taps=N, turns=N.

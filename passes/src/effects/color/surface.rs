@@ -73,6 +73,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "scene_sampler",
     "ambient_occlusion",
     "structure",
+    "contact_depth",
     "reflections",
     "reflection_hit_distance",
     "fog",
@@ -118,7 +119,7 @@ pub(crate) struct SurfaceInputs {
     pub shadow: Option<ShadowInput>,
     /// Pyramid of the radiance behind transmissive surfaces.
     pub scene: Option<View>,
-    /// Depth of the scene, for contact shadows.
+    /// Depth of the scene at the size of the picture, for contact shadows.
     pub contact: Option<View>,
     /// Ambient occlusion.
     pub occlusion: Option<OcclusionInput>,
@@ -191,7 +192,7 @@ impl SurfaceBindings {
         };
         let lists = view.view.light_lists.as_ref().filter(|_| LightLists::can_be_bound(&cx.gpu().device.limits()));
         let fog = inputs.fog.filter(FogSettings::is_seen);
-        let structure = inputs.occlusion.and_then(|input| input.structure).or(inputs.contact);
+        let structure = inputs.occlusion.and_then(|input| input.structure);
         let mut frame = view.view.frame;
         if let Some((_, [bias, overestimation])) = inputs.moments {
             (frame.blended.z, frame.blended.w) = (bias, overestimation);
@@ -211,6 +212,7 @@ impl SurfaceBindings {
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
             inputs.occlusion.map(|input| cx.view(input.picture)).transpose()?.map(Binding::from),
             structure.map(|structure| cx.view(structure)).transpose()?.map(Binding::from),
+            inputs.contact.map(|depth| cx.view(depth)).transpose()?.map(Binding::from),
             inputs.reflections.map(|[found, _]| cx.view(found)).transpose()?.map(Binding::from),
             inputs.reflections.map(|[_, ways]| cx.view(ways)).transpose()?.map(Binding::from),
             fog.map(|fog| cx.uniform(&fog.uniforms(&view.view))),

@@ -1,11 +1,10 @@
 //! Structure: the depth of opaque and masked surfaces as a pyramid, for screen-space effects.
 //!
-//! Draws the geometry again with one sample per texel, even after a depth prepass. The depth of the color pass
-//! therefore never leaves the tile, at any sample count, and the structure may be smaller than the picture. Nothing
-//! runs unless a pass reads it.
+//! Copies the depth of a prepass with one sample per texel, at its size or at half of it. Without such a prepass, the
+//! geometry is drawn. Nothing runs unless a pass reads it.
 //!
 //! ```text
-//! structure ─> structure_level 1 ─> structure_level 2 ─> …   each keeps one texel of four, in a rotated grid
+//! prepass ─> structure ─> structure_level 1 ─> structure_level 2 ─> …   each keeps one texel of four, in a rotated grid
 //! ```
 
 use crate::effects::depth::prepass::{DEPTH_FORMAT, draw_depth};
@@ -14,7 +13,7 @@ use crate::gpu_scene::view::{ViewId, Views};
 use crate::program::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
 use crate::stages::{Handles, Slot, StageError};
-use framegraph::{ClearValue, DeclareError, Extent, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
+use framegraph::{Aspect, ClearValue, DeclareError, Extent, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_shaders::{Module, library};
 use framegraph_wgpu::{Cx, Depth, Frame, Record, RecordError};
 use wgpu::CompareFunction;
@@ -82,6 +81,39 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
     }
 }
 
+/// Copies level 0 from the depth of a prepass.
+#[derive(Clone, Copy, Debug)]
+pub struct StructureOf {
+    /// Reversed depth with one sample per texel; its first level is read.
+    pub depth: Texture,
+    /// Resolution of level 0, relative to the depth.
+    pub resolution: Resolution,
+    /// Number of levels of the texture.
+    pub levels: u8,
+}
+
+impl Pass for StructureOf {
+    type Io = StructureLevelIo;
+
+    fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<StructureLevelIo, DeclareError> {
+        let TextureDesc { extent, format, .. } = pass.desc(self.depth)?;
+        let finer = match format.has_stencil() {
+            true => pass.sampled(self.depth.mip(0).aspect(Aspect::Depth))?,
+            false => pass.sampled(self.depth.mip(0))?,
+        };
+        let desc = TextureDesc::new(self.resolution.of(extent), DEPTH_FORMAT).mips(self.levels.max(1));
+        let structure = pass.texture("structure", desc);
+        Ok(StructureLevelIo { finer, structure: pass.depth(structure.mip(0), Intent::Overwrite)? })
+    }
+}
+
+impl<W: AsRef<Programs> + ?Sized> Record<W> for StructureOf {
+    fn record(&self, io: &StructureLevelIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
+        let fragment = if self.resolution == Resolution::Full { "fs_copy" } else { "fs_half" };
+        draw_level(fragment, io, world.as_ref(), cx)
+    }
+}
+
 /// Makes one further level from the level above.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureLevel {
@@ -113,15 +145,33 @@ impl Pass for StructureLevel {
 
 impl<W: AsRef<Programs> + ?Sized> Record<W> for StructureLevel {
     fn record(&self, io: &StructureLevelIo, world: &W, cx: &mut Cx<'_>) -> Result<(), RecordError> {
-        let provided = [Some(cx.view(io.finer)?.into())];
-        let program = ProgramDesc { fragment: Some("fs_level"), ..ProgramDesc::new(&SHADER, &INTERFACE) };
-        let depth = Depth { compare: CompareFunction::Always, write: true, ..Depth::NONE };
-        FullScreen { depth, ..FullScreen::new(program, &[&provided]) }.draw(world.as_ref(), cx)
+        draw_level("fs_level", io, world.as_ref(), cx)
     }
 }
 
-/// Returns the structure of the frame ([`Slot::STRUCTURE`]). The first request declares it with its resolution; later
-/// requests share it.
+fn draw_level(
+    fragment: &'static str,
+    io: &StructureLevelIo,
+    programs: &Programs,
+    cx: &mut Cx<'_>,
+) -> Result<(), RecordError> {
+    let provided = [Some(cx.view(io.finer)?.into())];
+    let program = ProgramDesc { fragment: Some(fragment), ..ProgramDesc::new(&SHADER, &INTERFACE) };
+    let depth = Depth { compare: CompareFunction::Always, write: true, ..Depth::NONE };
+    FullScreen { depth, ..FullScreen::new(program, &[&provided]) }.draw(programs, cx)
+}
+
+/// Returns depth of the view's opaque and masked surfaces with one sample per texel, if a pass has drawn it
+/// ([`Slot::DEPTH`]).
+pub fn drawn_depth<W: ?Sized + 'static>(frame: &Frame<W>, handles: &Handles) -> Option<Texture> {
+    let (depth, graph) = (handles.find(Slot::DEPTH)?, frame.graph());
+    let desc = graph.resources()[graph.resource_of(depth)?.index()].desc.texture()?;
+    (desc.samples == 1).then_some(depth)
+}
+
+/// Returns the structure of the frame at a resolution ([`Slot::STRUCTURE`], [`Slot::HALF_STRUCTURE`]). The first
+/// request declares it with its levels; later requests share it. It is a copy of the depth of the prepass if that has
+/// one sample per texel, and is drawn otherwise.
 ///
 /// # Errors
 /// Returns the error of a refused pass.
@@ -134,15 +184,25 @@ pub fn structure<W>(
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
 {
-    if let Some(structure) = handles.find(Slot::STRUCTURE) {
+    let slot = match resolution {
+        Resolution::Full => Slot::STRUCTURE,
+        Resolution::Half => Slot::HALF_STRUCTURE,
+    };
+    if let Some(structure) = handles.find(slot) {
         return Ok(structure);
     }
-    let pass = Structure { view: handles.view(), extent: resolution.of(handles.extent()), levels };
-    let mut structure = frame.add("structure", pass)?;
+    let drawn = drawn_depth(frame, handles).or_else(|| handles.find(Slot::STRUCTURE));
+    let mut structure = match drawn {
+        Some(depth) => frame.add("structure", StructureOf { depth, resolution, levels })?.structure,
+        None => {
+            let extent = resolution.of(handles.extent());
+            frame.add("structure", Structure { view: handles.view(), extent, levels })?
+        }
+    };
     for level in 1..levels {
         structure = frame.add("structure_level", StructureLevel { structure, level })?.structure;
     }
-    handles.set(Slot::STRUCTURE, structure);
+    handles.set(slot, structure);
     Ok(structure)
 }
 

@@ -13,7 +13,7 @@ use glam::{IVec2, Vec4};
 static SHADER: Module<'static> = library::pass("pass/bilateral.wgsl").unwrap();
 
 static INTERFACE: Interface =
-    Interface { groups: &[&["bilateral", "occlusion_in", "structure"]], constants: &["REACH"] };
+    Interface { groups: &[&["bilateral", "occlusion_in", "structure"]], constants: &["REACH", "ALL_CHANNELS"] };
 
 /// Direction of the blur.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +38,8 @@ pub struct OcclusionBlur {
     pub blur: Blur,
     /// Axis of the blur.
     pub axis: Axis,
+    /// Blurs the bent normal in the other channels too.
+    pub bent_normals: bool,
 }
 
 /// Handles of the pass.
@@ -78,7 +80,7 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for OcclusionBlur {
         };
         let provided = [cx.uniform(&settings), cx.view(io.occlusion)?.into(), cx.view(io.structure)?.into()];
         let program = ProgramDesc::new(&SHADER, &INTERFACE);
-        let constants = [f64::from(reach)];
+        let constants = [f64::from(reach), f64::from(self.bent_normals)];
         FullScreen { constants: &constants, ..FullScreen::new(program, &[&provided.map(Some)]) }
             .draw(world.as_ref(), cx)
     }

@@ -83,9 +83,10 @@ impl OcclusionSettings {
                 let sigma = self.blur.map_or(SaoQuality::Low.sigma(), |blur| blur.sigma * blur.stride as f32);
                 self.blur = match value {
                     "off" => None,
+                    "low" => Some(Blur { threshold_m, ..Blur::LOW }),
                     "medium" => Some(Blur { threshold_m, ..Blur::medium(sigma) }),
                     "high" => Some(Blur { threshold_m, ..Blur::high(sigma) }),
-                    _ => return Err(wrong("`off`, `medium` or `high`")),
+                    _ => return Err(wrong("`off`, `low`, `medium` or `high`")),
                 }
             }
             "threshold" => {

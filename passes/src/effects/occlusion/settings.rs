@@ -188,6 +188,9 @@ pub struct Blur {
 }
 
 impl Blur {
+    /// Seven texels, for [`Method::Gtao`]. Its noise repeats every four texels, so a wider blur only removes detail.
+    pub const LOW: Self = Self { reach: 3, stride: 1, sigma: 2.0, threshold_m: 0.05 };
+
     /// Filament's medium filter: every second of 21 texels.
     pub const fn medium(sigma: f32) -> Self {
         Self { reach: 5, stride: 2, sigma: 0.5 * sigma, threshold_m: 0.05 }
@@ -225,12 +228,8 @@ impl OcclusionSettings {
     };
 
     /// GTAO. The bias is smaller than SAO's, since it only has to exceed rounding.
-    pub const GTAO: Self = Self {
-        method: Method::Gtao(Gtao::DEFAULT),
-        bias: 0.0001,
-        blur: Some(Blur::high(SaoQuality::Ultra.sigma())),
-        ..Self::SAO
-    };
+    pub const GTAO: Self =
+        Self { method: Method::Gtao(Gtao::DEFAULT), bias: 0.0001, blur: Some(Blur::LOW), ..Self::SAO };
 
     /// Returns a preset of SAO with its blur.
     pub const fn sao(quality: SaoQuality) -> Self {
