@@ -85,6 +85,12 @@ impl FormatTable {
     /// No use of any format.
     pub const NONE: Self = Self([FormatCaps::NONE; Format::ALL.len()]);
 
+    /// Every use of every format, for a device without limits.
+    pub fn all() -> Self {
+        let all = FormatCaps::NAMES.iter().fold(FormatCaps::NONE, |all, (bit, _)| all.union(*bit));
+        Self([all; Format::ALL.len()])
+    }
+
     /// Returns the capabilities of a format.
     #[inline]
     pub const fn get(&self, format: Format) -> FormatCaps {
@@ -133,7 +139,8 @@ impl<'de> serde::Deserialize<'de> for FormatCaps {
         names.iter().try_fold(Self::NONE, |all, name| {
             let known = Self::NAMES.iter().find(|(_, word)| word == name);
             let listed = || Self::NAMES.iter().map(|(_, word)| *word).collect::<Vec<_>>().join(", ");
-            let unknown = || serde::de::Error::custom(format!("unknown use of a format `{name}`; expected {}", listed()));
+            let unknown =
+                || serde::de::Error::custom(format!("unknown use of a format `{name}`; expected {}", listed()));
             known.map(|(bit, _)| all.union(*bit)).ok_or_else(unknown)
         })
     }

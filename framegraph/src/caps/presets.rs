@@ -273,18 +273,14 @@ fn webgpu(format: Format) -> FormatCaps {
             COLOR.union(averaged).union(smooth)
         }
         Rgba8Unorm | Rgba16Float => COLOR.union(averaged).union(smooth).union(STORAGE),
-        R8Snorm | Rg8Snorm => COLOR.union(smooth),
-        Rgba8Snorm => COLOR.union(smooth).union(STORAGE),
-        // Drawing into it is optional.
-        Rg11b10Ufloat => COLOR.union(smooth).union(FormatCaps::SAMPLES_4),
-        Rgb9e5Ufloat => COLOR.union(FormatCaps::FILTERABLE).union(FormatCaps::BLENDABLE),
+        // Drawing into Rg11b10Ufloat is optional.
+        R8Snorm | Rg8Snorm | Rg11b10Ufloat | Rgb9e5Ufloat => COLOR.union(FormatCaps::FILTERABLE),
+        Rgba8Snorm => COLOR.union(FormatCaps::FILTERABLE).union(STORAGE),
         R8Uint | R8Sint | R16Uint | R16Sint | Rg8Uint | Rg8Sint | Rg16Uint | Rg16Sint | Rgb10a2Uint => {
             COLOR.union(MSAA)
         }
         R32Float => COLOR.union(MSAA).union(STORAGE).union(FormatCaps::STORAGE_READ_WRITE),
-        R32Uint | R32Sint => {
-            COLOR.union(FormatCaps::RENDERABLE).union(STORAGE).union(FormatCaps::STORAGE_READ_WRITE)
-        }
+        R32Uint | R32Sint => COLOR.union(FormatCaps::RENDERABLE).union(STORAGE).union(FormatCaps::STORAGE_READ_WRITE),
         Rgba8Uint | Rgba8Sint | Rgba16Uint | Rgba16Sint => COLOR.union(MSAA).union(STORAGE),
         Rg32Uint | Rg32Sint | Rg32Float | Rgba32Uint | Rgba32Sint | Rgba32Float => {
             COLOR.union(FormatCaps::RENDERABLE).union(STORAGE)

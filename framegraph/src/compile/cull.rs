@@ -177,8 +177,7 @@ pub(super) fn use_before(pass: PassId, accesses: &[Access], access: &Access, aft
 /// use of these is therefore no read. This does not hold for depth tests and storage buffers.
 #[inline]
 pub(super) fn reads(accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> bool {
-    access.needs_contents()
-        && (access.kind != AccessKind::Color || after() || is_resolved_by(accesses, access.slot))
+    access.needs_contents() && (access.kind != AccessKind::Color || after() || is_resolved_by(accesses, access.slot))
 }
 
 /// Returns `true` if the pass resolves its color attachment in this slot.

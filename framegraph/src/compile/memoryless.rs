@@ -47,13 +47,7 @@ pub(crate) fn memoryless(
 }
 
 /// Returns the reason why an attachment of a single step needs memory, if any.
-fn need(
-    graph: &Tables,
-    caps: &Caps,
-    options: &Options,
-    attachment: &Attachment,
-    row: &Planned,
-) -> Option<MemoryNeed> {
+fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment, row: &Planned) -> Option<MemoryNeed> {
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)

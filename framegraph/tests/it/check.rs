@@ -117,7 +117,9 @@ fn the_frames_of_the_repository_are_clean_under_every_switch() {
         let name = path.display().to_string();
         let file = file::GraphFile::parse(&name, &text).unwrap_or_else(|e| panic!("{e}"));
         let graph = file.graph(&[]).unwrap_or_else(|e| panic!("{e}"));
-        for (preset, number) in Caps::PRESETS.iter().filter(|name| **name != "wgpu").cycle().zip((0..generate::OPTIONS).step_by(7)) {
+        for (preset, number) in
+            Caps::PRESETS.iter().filter(|name| **name != "wgpu").cycle().zip((0..generate::OPTIONS).step_by(7))
+        {
             let frame = file.frame().unwrap_or([1920, 1080]);
             let options = Options { frame, ..generate::options_of(number) };
             let plan = plan_with(&graph, &Caps::preset(preset).unwrap(), &options);

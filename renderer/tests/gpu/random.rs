@@ -7,8 +7,7 @@ use framegraph::{
     Access, AccessKind, Aspect, Attachment, Desc, Dimension, Format, Numeric, PassKind, Plan, Scratch, StoreOp,
 };
 use framegraph_wgpu::{
-    Binding, BoundResource, Compute, Cx, ExecuteError, Executor, Gpu, Output, Raster, RecordError, Shader, ViewPart,
-    texture_format,
+    Binding, BoundResource, Compute, Cx, Executor, Gpu, Output, Raster, RecordError, Shader, ViewPart, texture_format,
 };
 use framegraph_wgpu::{Frame, mock};
 use std::collections::BTreeMap;

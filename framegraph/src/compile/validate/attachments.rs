@@ -1,5 +1,6 @@
 //! Validation of the attachments of a pass.
 
+use crate::MAX_COLORS;
 use crate::access::{Access, AccessKind, Range};
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileErrors, CompileReason};
@@ -9,7 +10,6 @@ use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
-use crate::MAX_COLORS;
 
 /// Checks the size, layers, samples, resolves and device limits of the attachments of a pass.
 pub(super) fn attachments(

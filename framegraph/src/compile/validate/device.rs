@@ -115,7 +115,7 @@ fn texture_fault(caps: &Caps, access: &Access, format: Format, samples: u8) -> O
     view.map(|view| CompileReason::SrgbView { view })
 }
 
-/// Alignment of ranges of vertices and indirect arguments, and of storage sizes, in bytes. Vulkan, Metal and WebGPU
+/// Alignment of ranges of vertices, indices and indirect arguments, and of storage sizes, in bytes. Vulkan, Metal and WebGPU
 /// agree in it.
 const WORD: u64 = 4;
 
@@ -126,9 +126,8 @@ fn buffer_fault(graph: &Tables, caps: &Caps, access: &Access, size: u64) -> Opti
     let (alignment, max) = match kind {
         AccessKind::Uniform => (caps.uniform_alignment_bytes, caps.max_uniform_bytes),
         AccessKind::StorageRead | AccessKind::StorageWrite => (caps.storage_alignment_bytes, caps.max_storage_bytes),
-        AccessKind::Vertex | AccessKind::Indirect => (WORD, u64::MAX),
-        // Indices have 2 or 4 bytes.
-        AccessKind::Index => (2, u64::MAX),
+        // Indices may have 4 bytes.
+        AccessKind::Vertex | AccessKind::Index | AccessKind::Indirect => (WORD, u64::MAX),
         _ => return None,
     };
     if !offset.is_multiple_of(alignment.max(1)) {

@@ -127,7 +127,8 @@ fn shuffled(most: usize, count: usize) -> impl Iterator<Item = (u64, Graph, Vec<
         let lot = entropy.below(all.len() as u32) as usize;
         let graph = redeclared(&graph, &all[lot]);
         // An import with readers that are all culled may be invalid afterwards.
-        let sound = compile(&graph, &crate::support::wgpu(), &declared(), &mut Scratch::new(), &mut Plan::new()).is_ok();
+        let sound =
+            compile(&graph, &crate::support::wgpu(), &declared(), &mut Scratch::new(), &mut Plan::new()).is_ok();
         let passes: Vec<_> = graph.pass_ids().collect();
         let all = orders(&graph, &passes, 200).filter(|_| sound)?;
         Some((seed, graph, all))
