@@ -188,6 +188,13 @@ impl Access {
     /// Value of `slot` for a resolve of the depth attachment.
     pub const DEPTH: u8 = 15;
 
+    /// Returns `true` if the access uses the previous contents, or keeps a part of them: other slices of a
+    /// three-dimensional texture.
+    #[inline]
+    pub const fn needs_contents(&self) -> bool {
+        self.mode.needs_contents() || self.range.slice
+    }
+
     /// Returns `true` if this access attaches the samples that `resolve`, an access of the same pass, resolves.
     #[inline]
     pub const fn is_resolved_by(&self, resolve: &Self) -> bool {

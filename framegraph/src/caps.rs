@@ -1,11 +1,18 @@
 //! Device capabilities as plain data: a graph can be compiled for any device without having it.
 
+mod format_caps;
+mod presets;
+
 use crate::access::{Access, AccessKind};
 use crate::format::Format;
 use crate::resolve::{ResolveMode, ResolveModes};
 use crate::resource::{Desc, Extent, TextureDesc};
+pub use format_caps::{FormatCaps, FormatTable};
 
-/// Capabilities and limits of a device. Limits have the names and meanings of WebGPU.
+/// Capabilities and limits of a device: a plan for a device contains nothing that the device refuses.
+///
+/// Limits have the meanings of WebGPU. Uses of formats are those of `formats`, limits start with `max_`, and the other
+/// fields are rules.
 ///
 /// ```
 /// use framegraph::Caps;
@@ -22,17 +29,59 @@ pub struct Caps {
     pub name: String,
     /// Maximum number of color attachments of a step.
     pub max_color_attachments: u8,
-    /// Maximum sum of [`Format::tile_bytes`](crate::Format::tile_bytes) over the color attachments of a step, in bytes
-    /// per sample.
+    /// Maximum size of the color attachments of a step, in bytes per sample: the sum of
+    /// [`Format::tile_bytes`](crate::Format::tile_bytes) in the order of the slots, each aligned to its component.
     pub max_color_bytes_per_sample: u32,
+    /// Maximum number of layers that a pass attaches at once. 1 without multiview.
+    pub max_attached_layers: u32,
     /// Maximum width and height of a two-dimensional texture, in texels.
     pub max_texture_texels: u32,
+    /// Maximum width, height and depth of a three-dimensional texture, in texels.
+    pub max_volume_texels: u32,
     /// Maximum number of array layers of a texture.
     pub max_texture_layers: u32,
     /// Maximum size of a buffer, in bytes.
     pub max_buffer_bytes: u64,
-    /// Maximum number of samples per texel that every renderable format supports: 1, 4 (WebGPU), 8 or 16.
+    /// Maximum number of samples per texel: 1, 2, 4, 8 or 16. Each format also has its own set in `formats`.
     pub max_samples: u8,
+    /// Maximum number of textures that a pass samples. The limit of a shader stage, because one stage may read all.
+    pub max_sampled_textures: u32,
+    /// Maximum number of samplers of a shader stage. Not checked, because graphs declare no samplers.
+    pub max_samplers: u32,
+    /// Maximum number of storage textures of a pass. The limit of a shader stage.
+    pub max_storage_textures: u32,
+    /// Maximum number of storage buffers of a pass. The limit of a shader stage.
+    pub max_storage_buffers: u32,
+    /// Maximum number of uniform buffers of a pass. The limit of a shader stage.
+    pub max_uniform_buffers: u32,
+    /// Maximum size of a uniform binding, in bytes.
+    pub max_uniform_bytes: u64,
+    /// Maximum size of a storage binding, in bytes.
+    pub max_storage_bytes: u64,
+    /// Alignment of the offset of a uniform binding, in bytes; a power of two.
+    pub uniform_alignment_bytes: u64,
+    /// Alignment of the offset of a storage binding, in bytes; a power of two.
+    pub storage_alignment_bytes: u64,
+    /// Uses and sample counts of each format.
+    pub formats: FormatTable,
+    /// A texture can be viewed in the sRGB twin of its format.
+    pub srgb_views: bool,
+    /// A memoryless texture can be viewed in the sRGB twin of its format.
+    pub memoryless_views: bool,
+    /// Multisampled textures can have several layers.
+    pub multisampled_arrays: bool,
+    /// Multisampled textures can be used as storage.
+    pub multisampled_storage: bool,
+    /// Width and height of a block-compressed texture need not be multiples of the block.
+    pub partial_blocks: bool,
+    /// Raster passes can write storage textures and buffers.
+    pub raster_storage: bool,
+    /// A raster pass needs no attachment.
+    pub empty_raster: bool,
+    /// Textures can be cleared to zero outside of a render pass. Otherwise their format must be renderable.
+    pub clears_to_zero: bool,
+    /// Textures can be cleared to any value outside of a render pass. Otherwise their format must be renderable.
+    pub clears_to_value: bool,
     /// Attachments that never leave the tile can be memoryless.
     pub memoryless: bool,
     /// Attachments with several layers can be memoryless too.
@@ -59,9 +108,6 @@ pub struct Caps {
     pub separate_planes: bool,
     /// Modes of color resolves that the device performs while it stores a step. Other modes need a full-screen pass.
     pub color_resolves: ResolveModes,
-    /// Formats that cannot be averaged while storing, in spite of `color_resolves`. Not serialized.
-    #[cfg_attr(feature = "files", serde(skip))]
-    pub not_averaged: Vec<Format>,
     /// Modes of depth resolves that the device performs while it stores a step. Other modes need a full-screen pass.
     pub depth_resolves: ResolveModes,
     /// Textures and buffers can be placed at offsets of one allocation.
@@ -88,104 +134,35 @@ pub struct Caps {
 }
 
 impl Caps {
-    /// A desktop GPU with an explicit API: no tiles, placed resources, explicit barriers.
-    pub fn desktop() -> Self {
-        Self {
-            name: "desktop".into(),
-            max_color_attachments: 8,
-            max_color_bytes_per_sample: 64,
-            max_texture_texels: 16384,
-            max_texture_layers: 2048,
-            max_buffer_bytes: 1 << 31,
-            max_samples: 8,
-            memoryless: false,
-            memoryless_layers: false,
-            memoryless_saves: false,
-            merge_attachments: true,
-            same_pixel: false,
-            slot_mapping: true,
-            inline: false,
-            tile_bytes_per_pixel: 0,
-            sample_read_only_depth: true,
-            separate_planes: true,
-            color_resolves: ResolveModes::of(&[ResolveMode::Average]),
-            not_averaged: Vec::new(),
-            // Supported by every Vulkan 1.2 device; the other modes are optional.
-            depth_resolves: ResolveModes::of(&[ResolveMode::Sample0]),
-            placed: true,
-            placed_histories: true,
-            padded: Vec::new(),
-            separate_heaps: false,
-            texture_alignment_bytes: 65536,
-            buffer_alignment_bytes: 256,
-            explicit_barriers: true,
-            compute_queue: true,
-            copy_queue: true,
-        }
-    }
-
-    /// A tile-based GPU with an explicit API: input attachments, memoryless attachments, placed resources.
-    pub fn tiler() -> Self {
-        Self {
-            name: "tiler".into(),
-            max_color_bytes_per_sample: 32,
-            max_texture_texels: 8192,
-            max_samples: 4,
-            memoryless: true,
-            memoryless_layers: true,
-            memoryless_saves: true,
-            same_pixel: true,
-            tile_bytes_per_pixel: 128,
-            texture_alignment_bytes: 4096,
-            copy_queue: false,
-            ..Self::desktop()
-        }
-    }
-
-    /// The capabilities of wgpu 30 on any adapter with WebGPU's default limits.
-    ///
-    /// Supports merged attachments, transient attachments, shader epilogues and automatic barriers. Does not support
-    /// input attachments, depth resolves and placed resources.
-    pub fn wgpu() -> Self {
-        Self {
-            name: "wgpu".into(),
-            max_color_bytes_per_sample: 32,
-            max_texture_texels: 8192,
-            max_texture_layers: 256,
-            max_buffer_bytes: 256 << 20,
-            max_samples: 4,
-            memoryless: true,
-            slot_mapping: false,
-            inline: true,
-            separate_planes: false,
-            depth_resolves: ResolveModes::NONE,
-            placed: false,
-            explicit_barriers: false,
-            compute_queue: false,
-            copy_queue: false,
-            ..Self::desktop()
-        }
-    }
-
-    /// Returns the preset with this name: `desktop`, `tiler` or `wgpu`.
-    pub fn preset(name: &str) -> Option<Self> {
-        match name {
-            "desktop" => Some(Self::desktop()),
-            "tiler" => Some(Self::tiler()),
-            "wgpu" => Some(Self::wgpu()),
-            _ => None,
-        }
-    }
-
-    /// Names accepted by [`Caps::preset`].
-    pub const PRESETS: [&'static str; 3] = ["desktop", "tiler", "wgpu"];
-
     /// Returns `true` if the device performs a resolve into a texture of this format while it stores the step.
     pub fn resolves_in_store(&self, access: &Access, format: Option<Format>) -> bool {
         debug_assert_eq!(access.kind, AccessKind::Resolve);
         let modes = if access.slot == Access::DEPTH { self.depth_resolves } else { self.color_resolves };
-        let apart = |format| access.resolve == ResolveMode::Average && self.not_averaged.contains(&format);
+        let apart = |format| access.resolve == ResolveMode::Average && !self.averages(format);
         modes.has(access.resolve) && !format.is_some_and(apart)
+    }
+
+    /// Returns a format with the same kind of values that supports `uses`, preferring the smallest of at least the same
+    /// size. `None` if there is none.
+    pub fn similar_format(&self, format: Format, uses: FormatCaps) -> Option<Format> {
+        let fits = |other: &Format| {
+            self.formats.get(*other).contains(uses)
+                && other.numeric() == format.numeric()
+                && other.is_compressed() == format.is_compressed()
+                && other.has_stencil() == format.has_stencil()
+                && (format.is_depth_stencil() || other.channels() >= format.channels())
+                && other.block_bytes() >= format.block_bytes()
+        };
+        Format::ALL
+            .into_iter()
+            .filter(fits)
+            .min_by_key(|other| (other.is_srgb() != format.is_srgb(), other.block_bytes()))
+    }
+
+    /// Returns `true` if the device averages samples of this format while it stores a step, where `color_resolves`
+    /// contains [`ResolveMode::Average`].
+    pub const fn averages(&self, format: Format) -> bool {
+        self.formats.get(format).contains(FormatCaps::RESOLVABLE)
     }
 
     /// Returns the allocation size of `desc` in a heap, for a resource with `bytes` bytes of texels.

@@ -87,9 +87,18 @@ error_enum! {
             "view it in its own format or the sRGB twin of it";
         NotOneLevel { access: AccessKind } "`{access}` needs a single mip level",
             "select the level: `texture.mip(n)`, in a file `mip: n`";
-        /// Contents of three-dimensional textures are not tracked by slice.
-        Slices { access: AccessKind } "`{access}` cannot use a level with several slices",
-            "write it as storage or with a copy, or draw into layers of a two-dimensional texture";
+        /// Only color attachments select a slice of a three-dimensional texture, and exactly one.
+        Slices { access: AccessKind } "`{access}` cannot use {which} of a three-dimensional texture", "{hint}",
+            (which, hint) = match access {
+                AccessKind::Color => (
+                    "several slices",
+                    "attach one slice per pass: `texture.layer(n)`, in a file `layer: n`; or write it as storage",
+                ),
+                access if access.is_attachment() || *access == AccessKind::SamePixel => {
+                    ("slices", "use layers of a two-dimensional texture")
+                }
+                _ => ("single slices", "use the whole level"),
+            };
         SecondDepth "the pass already has a depth attachment", "split the pass in two";
         SlotTaken { slot: u8 } "color slot {slot} is in use",
             "use `color` (in a file, omit the slot), or choose a free slot";

@@ -120,6 +120,37 @@ impl Format {
         }
     }
 
+    /// Number of channels of a color format: 1 to 4. For depth-stencil formats, the number of planes.
+    pub const fn channels(self) -> u8 {
+        use Format::*;
+        match self {
+            R8Unorm | R8Snorm | R8Uint | R8Sint | R16Uint | R16Sint | R16Float | R32Uint | R32Sint | R32Float
+            | Bc4RUnorm | Stencil8 | Depth16Unorm | Depth24Plus | Depth32Float => 1,
+            Rg8Unorm | Rg8Snorm | Rg8Uint | Rg8Sint | Rg16Uint | Rg16Sint | Rg16Float | Rg32Uint | Rg32Sint
+            | Rg32Float | Bc5RgUnorm | Depth24PlusStencil8 | Depth32FloatStencil8 => 2,
+            Rgb9e5Ufloat | Rg11b10Ufloat | Bc6hRgbUfloat | Etc2Rgb8Unorm => 3,
+            _ => 4,
+        }
+    }
+
+    /// Size of one component in the tile, in bytes: WebGPU's "render target component alignment". Attachments start at
+    /// a multiple of it.
+    pub const fn tile_component_bytes(self) -> u32 {
+        use Format::*;
+        match self {
+            R16Uint | R16Sint | R16Float | Rg16Uint | Rg16Sint | Rg16Float | Rgba16Uint | Rgba16Sint | Rgba16Float => 2,
+            R32Uint | R32Sint | R32Float | Rg32Uint | Rg32Sint | Rg32Float | Rgba32Uint | Rgba32Sint | Rgba32Float
+            | Rgb10a2Uint | Rgb10a2Unorm | Rg11b10Ufloat => 4,
+            _ => 1,
+        }
+    }
+
+    /// Returns the size of color attachments in the tile, in bytes per sample, each aligned to its component as in
+    /// WebGPU. `formats` are ordered by slot.
+    pub fn tile_sum(formats: impl Iterator<Item = Self>) -> u32 {
+        formats.fold(0, |sum: u32, f| sum.next_multiple_of(f.tile_component_bytes()) + f.tile_bytes())
+    }
+
     /// Returns `true` if the format has a depth or a stencil plane.
     pub const fn is_depth_stencil(self) -> bool {
         self.has_depth() || self.has_stencil()

@@ -124,7 +124,7 @@ mod warning;
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
 pub use backend::Scope;
 pub use barrier::{Barrier, Stages, State};
-pub use caps::Caps;
+pub use caps::{Caps, FormatCaps, FormatTable};
 pub use compile::{
     CompileError, CompileErrors, CompileReason, Scratch, ShapeReason, compile, compile_after, recompile,
 };

@@ -7,7 +7,7 @@
 //! Graphs contain mip levels, array layers, planes, three-dimensional textures, multisampling with resolves, imports,
 //! histories, buffers, exports, readbacks, side effects and all pass flags.
 //!
-//! Graphs are valid for a frame of [`FRAME`] texels on every preset of [`Caps`], unless the profile requests
+//! Graphs are valid for a frame of [`FRAME`] texels on every preset of [`Caps`] after [`capable`], unless the profile requests
 //! [sloppy](Profile::sloppy) ones. Sloppy graphs violate rules now and then; the compiler must report errors or produce
 //! a correct plan.
 //!
@@ -34,7 +34,7 @@ pub use profile::{FRAME, Profile};
 
 use accesses::Draft;
 use framegraph::access::AccessKind;
-use framegraph::caps::Caps;
+use framegraph::caps::{Caps, FormatCaps, FormatTable};
 use framegraph::format::Format;
 use framegraph::graph::Graph;
 use framegraph::internals;
@@ -85,11 +85,11 @@ fn pass(world: &mut World<'_, '_>, index: u32) {
 
 /// Returns a random variation of a preset. It may not support every valid graph, because its limits can be lower.
 pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
-    let mut caps = match entropy.below(3) {
+    let mut caps = capable(match entropy.below(3) {
         0 => Caps::wgpu(),
         1 => Caps::tiler(),
         _ => Caps::desktop(),
-    };
+    });
     let flags = [
         &mut caps.memoryless,
         &mut caps.memoryless_layers,
@@ -115,7 +115,9 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
         (caps.color_resolves, caps.depth_resolves) = (some(entropy), some(entropy));
     }
     if entropy.one_in(4) {
-        caps.not_averaged = Format::ALL.into_iter().filter(|f| f.is_resolvable() && entropy.one_in(3)).collect();
+        for format in Format::ALL.into_iter().filter(|f| f.is_resolvable() && entropy.one_in(3)) {
+            caps.formats = caps.formats.without(format, FormatCaps::RESOLVABLE);
+        }
     }
     if entropy.one_in(4) {
         caps.max_color_attachments = entropy.pick(&[2, 4]);
@@ -128,6 +130,21 @@ pub fn caps(entropy: &mut Entropy<'_>) -> Caps {
         caps.buffer_alignment_bytes = entropy.pick(&[1, 4, 256]);
     }
     caps
+}
+
+/// Returns the device with all formats, layers, bindings and clears that generated graphs use.
+pub fn capable(caps: Caps) -> Caps {
+    Caps {
+        formats: FormatTable::desktop(),
+        max_attached_layers: 2048,
+        max_storage_textures: 16,
+        clears_to_zero: true,
+        clears_to_value: true,
+        empty_raster: true,
+        storage_alignment_bytes: 4,
+        uniform_alignment_bytes: 4,
+        ..caps
+    }
 }
 
 /// Returns the graph with every same-pixel read replaced by a sampled one.

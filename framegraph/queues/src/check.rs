@@ -224,7 +224,7 @@ fn not_owned(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
         for step in plan.step_ids() {
             let lane = schedule.lanes[step.index()];
             for access in accesses(plan, step).filter(|access| access.resource == resource) {
-                let keeps = access.mode.needs_contents() || access.range != framegraph::Range::ALL;
+                let keeps = access.needs_contents() || access.range != framegraph::Range::ALL;
                 let moved = transfers().any(|t| t.to == (lane, Some(step)) && Some(t.from.0) == owner);
                 if keeps && owner.is_some_and(|owner| owner != lane) && !moved {
                     found.push(Violation::NotOwned { step, resource });

@@ -39,7 +39,7 @@ pub fn transfers(plan: &Plan, lanes: &[QueueId]) -> (Vec<Transfer>, Vec<Resource
         for (step, access) in accesses {
             let lane = lanes[*step as usize];
             let here = StepId::at(*step as usize);
-            if lane != owner.0 && holds && (access.mode.needs_contents() || !is_whole(access)) {
+            if lane != owner.0 && holds && (access.needs_contents() || !is_whole(access)) {
                 transfers.push(Transfer { resource: id, from: owner, to: (lane, Some(here)) });
             }
             holds |= access.mode.writes();

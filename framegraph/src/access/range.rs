@@ -2,7 +2,7 @@
 
 use crate::format::{Aspect, Format};
 use crate::id::{BytesId, ResourceId};
-use crate::resource::TextureDesc;
+use crate::resource::{Dimension, TextureDesc, halved};
 
 /// Levels, layers and planes of a texture, or bytes of a buffer.
 ///
@@ -23,6 +23,9 @@ pub struct Range {
     pub view: Option<Format>,
     /// Bytes of a buffer; none for a whole buffer or a texture.
     pub bytes: BytesId,
+    /// One of several slices of a three-dimensional texture, numbered by `layer`. Contents are tracked by level, so a
+    /// write keeps the other slices.
+    pub slice: bool,
 }
 
 /// A byte range that an access refers to: a row of [`Graph::byte_ranges`](crate::graph::Tables::byte_ranges).
@@ -59,16 +62,23 @@ impl Range {
         aspect: Aspect::All,
         view: None,
         bytes: BytesId::NONE,
+        slice: false,
     };
 
     /// Returns the range in canonical form, so that equal ranges of one texture compare equal.
     ///
     /// Replaces a count of all remaining layers, the only plane of a format, and a view in the texture's own format by
-    /// their defaults.
+    /// their defaults. Marks single slices of a three-dimensional texture.
     #[inline]
     #[must_use]
     pub(crate) fn canonical(mut self, texture: &TextureDesc) -> Self {
-        if u32::from(self.layer) + u32::from(self.layers) >= texture.tracked_layers() {
+        self.slice = false;
+        if texture.dimension == Dimension::D3 {
+            self.slice = self.layers == 1 && halved(texture.layers.into(), self.mip.into()) > 1;
+            if !self.slice {
+                (self.layer, self.layers) = (0, u16::MAX);
+            }
+        } else if u32::from(self.layer) + u32::from(self.layers) >= texture.tracked_layers() {
             self.layers = u16::MAX;
         }
         if texture.format.planes() == 1 {
@@ -88,6 +98,7 @@ impl Range {
             && matches!(self.aspect, Aspect::All)
             && self.view.is_none()
             && self.bytes.is_none()
+            && !self.slice
     }
 
     /// Returns the levels as `first..end`, for a texture of `count` levels.

@@ -209,8 +209,9 @@ impl AttachmentSet {
         let format = |(_, (r, _)): (u8, ResourceRange)| graph.resources[r.index()].desc.texture().map(|t| t.format);
         let formats = self.colors().filter_map(format);
         let count = formats.clone().count();
-        let bytes: u32 = formats.map(Format::tile_bytes).sum();
-        let many = count > usize::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample;
+        let bytes: u32 = formats.clone().map(Format::tile_bytes).sum();
+        let many = count > usize::from(caps.max_color_attachments)
+            || Format::tile_sum(formats) > caps.max_color_bytes_per_sample;
         if many && !caps.same_pixel {
             return Err(Refusal::TooManyAttachments);
         }

@@ -177,8 +177,7 @@ pub(super) fn use_before(pass: PassId, accesses: &[Access], access: &Access, aft
 /// use of these is therefore no read. This does not hold for depth tests and storage buffers.
 #[inline]
 pub(super) fn reads(accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> bool {
-    access.mode.needs_contents()
-        && (access.kind != AccessKind::Color || after() || is_resolved_by(accesses, access.slot))
+    access.needs_contents() && (access.kind != AccessKind::Color || after() || is_resolved_by(accesses, access.slot))
 }
 
 /// Returns `true` if the pass resolves its color attachment in this slot.
@@ -196,7 +195,7 @@ fn drop_pass(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Acc
         found.unwrap_or(NextUse::Unread).culled(a.resource)
     });
     for access in accesses {
-        let read = access.mode.needs_contents();
+        let read = access.needs_contents();
         parts.update(needs, access.resource, access.range, |need| {
             if !need.is_needed() {
                 *need = if read { need.or_culled_reader(pass) } else { need.or_culled_writer(pass) };

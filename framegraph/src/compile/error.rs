@@ -1,6 +1,8 @@
 //! Errors of a graph as a whole, with the names involved, the source location and a hint.
 
 use crate::access::{AccessKind, ClearValue};
+use crate::caps::FormatCaps;
+use crate::enum_names::enum_names;
 use crate::error::{DeclareError, Named, named};
 use crate::error_list::Errors;
 use crate::error_macros::{error_enum, impl_error, show};
@@ -108,6 +110,59 @@ error_enum! {
         SampledDepth { access: AccessKind }
             "used as `{access}` and as depth attachment at the same time, which the device does not support",
             "copy it first, or read it in another pass";
+        /// The device cannot write one plane of a depth-stencil texture while a shader reads the other.
+        Planes { access: AccessKind }
+            "one plane is used as `{access}` while the pass writes the other, which the device does not support",
+            "test it with `depth_read_only`, copy the plane that is read, or use two textures";
+        /// The device does not support a format for an access.
+        FormatUse { access: AccessKind, format: Format, /** What the device supports. */ uses: FormatCaps, /** Similar format with that use. */ instead: Option<Format> }
+            "the device does not support {format:?} as `{access}`, {only}", "use {other}",
+            only = match uses.names().next() {
+                None => "nor for anything else".to_owned(),
+                Some(_) => format!("only for {}", uses.names().collect::<Vec<_>>().join(", ")),
+            },
+            other = instead.map_or("another format, or another device".to_owned(), |format| format!("{format:?}"));
+        /// A view in the sRGB twin of the format.
+        SrgbView { view: Format } "viewed as {view:?}, but the device has no views in another format",
+            "declare the texture in the format of the view";
+        MultisampledStorage { access: AccessKind, samples: u8 }
+            "{samples} samples are used as `{access}`, but the device has storage textures of one sample only",
+            "resolve it first, and use the resolved texture";
+        AttachedLayers { layers: u32, max: u32 }
+            "{layers} layers are attached at once, the device allows {max}",
+            "attach one layer per pass: `texture.layer(n)`, in a file `layer: n`";
+        /// A raster pass without attachments.
+        NoAttachment "the raster pass has no attachment, which the device requires",
+            "attach a texture, or make it a compute pass";
+        RasterStorage { access: AccessKind } "a raster pass uses it as `{access}`, which the device does not support",
+            "write it in a compute pass";
+        /// Too many resources for one shader stage.
+        Bindings { kind: BindingClass, count: u32, max: u32 }
+            "the pass uses {count} {kind}, the device allows {max} in a shader stage", "{hint}",
+            hint = match kind {
+                BindingClass::SampledTextures => "split the pass, or combine textures as layers of one texture",
+                BindingClass::StorageTextures => "split the pass, or combine textures as layers of one texture",
+                _ => "split the pass, or combine buffers",
+            };
+        BindingBytes { access: AccessKind, bytes: u64, max: u64 }
+            "{bytes} bytes are bound as `{access}`, the device allows {max}",
+            "declare a range: `buffer.bytes(offset, size)`, in a file `bytes: (offset, size)`{storage}",
+            storage = if *access == AccessKind::Uniform { ", or use a storage buffer" } else { "" };
+        BindingOffset { access: AccessKind, offset: u64, alignment: u64 }
+            "bytes from offset {offset} are used as `{access}`, the device requires a multiple of {alignment}",
+            "start the range at {before} or {after}",
+            before = offset / alignment * alignment, after = offset.next_multiple_of(*alignment);
+        BindingSize { access: AccessKind, bytes: u64, alignment: u64 }
+            "{bytes} bytes are used as `{access}`, the device requires a multiple of {alignment}", "use {up} bytes",
+            up = bytes.next_multiple_of(*alignment);
+        /// A clear outside of a render pass that the device cannot do.
+        ClearUnsupported { access: AccessKind, /** None for a buffer. */ format: Option<Format> }
+            "`{access}` clears {what} outside of a render pass, which the device does not support", "{hint}",
+            what = format.map_or("a buffer range that is not aligned to 4 bytes".to_owned(), |f| format!("{f:?}")),
+            hint = match format {
+                None => "use a range with offset and size in multiples of 4",
+                Some(_) => "overwrite it, or use a renderable format",
+            };
         TooManyPasses "the graph has too many passes", "split the graph";
     }
 }
@@ -123,24 +178,55 @@ error_enum! {
         Empty { extent: [u32; 2], layers: u16, samples: u8 }
             "{w}x{h} texels, {layers} layers, {samples} samples", "{NOTHING}", [w, h] = extent;
         Large { extent: [u32; 2], max: u32 } "{w}x{h} texels, the device allows {max}x{max}", "{LIMIT}", [w, h] = extent;
+        /// A three-dimensional texture.
+        LargeVolume { extent: [u32; 3], max: u32 } "{w}x{h}x{d} texels, the device allows {max}x{max}x{max}", "{LIMIT}",
+            [w, h, d] = extent;
+        /// A block-compressed texture that ends within a block.
+        PartialBlocks { extent: [u32; 2], format: Format, block: [u32; 2] }
+            "{w}x{h} texels of {format:?}, which the device divides into blocks of {x}x{y}",
+            "use a width and height in multiples of the block", [w, h] = extent, [x, y] = block;
         Levels { mips: u8, extent: [u32; 2], /** Down to one texel. */ full: u32 }
-            "{mips} levels, but {w}x{h} texels have at most {full}", "use fewer levels, or `ALL_MIPS`", [w, h] = extent;
+            "{mips} levels, but {w}x{h} texels have at most {full}",
+            "use fewer levels, or `TextureDesc::ALL_MIPS` for all (in a file `mips: \"all\"`)", [w, h] = extent;
         Layers { layers: u16, max: u32 } "{layers} layers, the device allows {max}", "{LIMIT}";
-        /// Not a power of two, or more samples than the device supports.
-        Samples { samples: u8, max: u8 } "{samples} samples{allowed}", "{hint}",
-            (allowed, hint) = match samples.is_power_of_two() {
-                true => (format!(", the device allows 1 to {max}"), LIMIT),
-                false => (String::new(), "use 1, 2, 4, 8 or 16 samples"),
-            };
+        /// Not a power of two, or a sample count that the device does not support for the format.
+        Samples { samples: u8, format: Format, uses: FormatCaps, /** For all formats. */ max: u8 }
+            "{samples} samples of {format:?}, the device allows {allowed}", "use {allowed}{other}",
+            allowed = uses.sample_counts(*max).map(|count| count.to_string()).collect::<Vec<_>>().join(" or "),
+            other = if uses.is_multisampled() { "" } else { ", or another format" };
+        /// A multisampled texture with several layers.
+        MultisampledLayers { samples: u8, layers: u16 }
+            "{samples} samples with {layers} layers, but the device has no multisampled arrays",
+            "use a texture for each layer, or one sample";
         /// A multisampled texture with several levels or three dimensions.
         Multisampled { samples: u8, mips: u32 } "{samples} samples with {mips} levels",
             "a multisampled texture has one level and two dimensions";
-        Volume { /** Of depth or stencil. */ format: Format } "{format:?} with three dimensions",
-            "use a two-dimensional depth-stencil texture with layers";
+        /// A depth-stencil format, or one that the device does not support with three dimensions.
+        Volume { format: Format } "{format:?} with three dimensions",
+            "use a two-dimensional texture with layers, or another format";
         TooManySubresources { /** Up to this resource. */ parts: u64, max: u64 }
             "the resources have {parts} subresources (level, layer and plane), the maximum is {max}",
             "use fewer levels or layers";
     }
+}
+
+/// Resources that a shader binds, counted for the limits of a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BindingClass {
+    /// Textures that are sampled.
+    SampledTextures,
+    /// Storage textures.
+    StorageTextures,
+    /// Storage buffers.
+    StorageBuffers,
+    /// Uniform buffers.
+    UniformBuffers,
+}
+
+enum_names! {
+    BindingClass:
+    SampledTextures "sampled textures", StorageTextures "storage textures", StorageBuffers "storage buffers",
+    UniformBuffers "uniform buffers"
 }
 
 const NOTHING: &str = "use at least one texel, layer and sample, or one byte";

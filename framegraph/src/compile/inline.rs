@@ -122,6 +122,7 @@ pub(crate) fn inlinable(
         || from.mips != 1
         || from.samples != 1
         || layers.end - layers.start != 1
+        || output.range.slice
         || to.samples != 1
         || input.range.view.or(output.range.view).is_some()
         || !to.format.is_resolvable()

@@ -15,7 +15,7 @@ const VOLUME: u64 = 1 << 40;
 
 impl Layout {
     /// The layout of every buffer.
-    pub(crate) const BUFFER: Self = Self(1 << 63 | 1 << MIPS | 1 << SAMPLES);
+    pub(crate) const BUFFER: Self = Self(1 << 63 | 1 << MIPS | 1 << SAMPLES | FORMAT);
 
     /// Returns the layout of a texture with `mips` levels, because `desc` may request the full chain.
     #[inline]
@@ -43,7 +43,7 @@ impl Layout {
         (self.0 >> SAMPLES) as u8
     }
 
-    /// Index of the format; meaningless for a buffer.
+    /// Index of the format; 255 for a buffer.
     #[inline]
     pub(crate) const fn format(self) -> u8 {
         self.0 as u8

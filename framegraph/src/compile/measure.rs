@@ -5,7 +5,7 @@
 use super::error::{CompileError, CompileErrors, CompileReason, ShapeReason};
 use super::layout::Layout;
 use crate::access::Access;
-use crate::caps::Caps;
+use crate::caps::{Caps, FormatCaps};
 use crate::format::Format;
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
@@ -181,7 +181,7 @@ fn measure_and_judge(
 fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeReason> {
     let max = caps.max_buffer_bytes;
     match row.desc {
-        Desc::Texture(ref t) => texture_fault(t, caps, frame, row.kind),
+        Desc::Texture(ref t) => texture_fault(t, caps, frame),
         Desc::Buffer(buffer) => match buffer.bytes(frame) {
             0 => Some(ShapeReason::EmptyBuffer),
             bytes => (bytes > max).then_some(ShapeReason::LargeBuffer { bytes, max }),
@@ -189,28 +189,39 @@ fn fault(row: &Resource, caps: &Caps, frame: [u32; 2]) -> Option<ShapeReason> {
     }
 }
 
-fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2], kind: Kind) -> Option<ShapeReason> {
+fn texture_fault(t: &TextureDesc, caps: &Caps, frame: [u32; 2]) -> Option<ShapeReason> {
     let TextureDesc { layers, samples, .. } = *t;
     let extent = t.extent.texels(frame);
     let (side, mips) = (extent[0].max(extent[1]), t.mip_count(frame));
     if extent.contains(&0) || layers == 0 || samples == 0 {
         return Some(ShapeReason::Empty { extent, layers, samples });
     }
-    // Imported textures exist, so device limits do not apply.
-    let made = !matches!(kind, Kind::Imported { .. });
-    let full = side.ilog2() + 1;
-    if made && side > caps.max_texture_texels {
+    let (volume, format) = (t.dimension == Dimension::D3, t.format);
+    let depth = if volume { u32::from(layers) } else { 1 };
+    // The full chain of a volume also halves its depth.
+    let full = side.max(depth).ilog2() + 1;
+    let (block_width, block_height) = format.block_texels();
+    let cut = !extent[0].is_multiple_of(block_width) || !extent[1].is_multiple_of(block_height);
+    let uses = caps.formats.get(format);
+    let counted = FormatCaps::of_samples(samples).is_some_and(|bit| uses.contains(bit));
+    if volume && side.max(depth) > caps.max_volume_texels {
+        Some(ShapeReason::LargeVolume { extent: [extent[0], extent[1], depth], max: caps.max_volume_texels })
+    } else if side > caps.max_texture_texels {
         Some(ShapeReason::Large { extent, max: caps.max_texture_texels })
     } else if mips > full {
         Some(ShapeReason::Levels { mips: t.mips, extent, full })
-    } else if made && u32::from(layers) > caps.max_texture_layers {
+    } else if !volume && u32::from(layers) > caps.max_texture_layers {
         Some(ShapeReason::Layers { layers, max: caps.max_texture_layers })
-    } else if !samples.is_power_of_two() || (made && samples > caps.max_samples) {
-        Some(ShapeReason::Samples { samples, max: caps.max_samples })
-    } else if samples > 1 && (mips > 1 || t.dimension != Dimension::D2) {
+    } else if cut && !caps.partial_blocks {
+        Some(ShapeReason::PartialBlocks { extent, format, block: [block_width, block_height] })
+    } else if samples > 1 && (mips > 1 || volume) {
         Some(ShapeReason::Multisampled { samples, mips })
-    } else if t.dimension == Dimension::D3 && t.format.is_depth_stencil() {
-        Some(ShapeReason::Volume { format: t.format })
+    } else if !counted || samples > caps.max_samples {
+        Some(ShapeReason::Samples { samples, format, uses, max: caps.max_samples })
+    } else if samples > 1 && layers > 1 && !caps.multisampled_arrays {
+        Some(ShapeReason::MultisampledLayers { samples, layers })
+    } else if volume && (format.is_depth_stencil() || !uses.contains(FormatCaps::VOLUME)) {
+        Some(ShapeReason::Volume { format })
     } else {
         None
     }

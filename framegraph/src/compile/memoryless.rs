@@ -32,7 +32,7 @@ pub(crate) fn memoryless(
         let need = match row.placement {
             Placement::Own => Some(MemoryNeed::LoadedOrStored),
             Placement::Memoryless => None,
-            _ => need(graph, caps, options, attachment, row.usage),
+            _ => need(graph, caps, options, attachment, row),
         };
         let reason = need.map_or(Reason::Memoryless(row.first), Reason::NeedsMemory);
         if need.is_none() {
@@ -47,7 +47,7 @@ pub(crate) fn memoryless(
 }
 
 /// Returns the reason why an attachment of a single step needs memory, if any.
-fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment, usage: Usage) -> Option<MemoryNeed> {
+fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment, row: &Planned) -> Option<MemoryNeed> {
     let texture = graph.resources[attachment.resource.index()].desc.texture()?;
     if !caps.memoryless || !options.memoryless {
         Some(MemoryNeed::Unsupported)
@@ -56,7 +56,9 @@ fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment,
     } else if texture.mips != 1 || texture.layers != 1 && !caps.memoryless_layers || texture.dimension != Dimension::D2
     {
         Some(MemoryNeed::SeveralParts)
-    } else if !usage.without(Usage::ATTACHMENT).without(Usage::INPUT_ATTACHMENT).is_empty() {
+    } else if row.srgb_views && !caps.memoryless_views {
+        Some(MemoryNeed::View)
+    } else if !row.usage.without(Usage::ATTACHMENT).without(Usage::INPUT_ATTACHMENT).is_empty() {
         // For example, another layer of it is written as storage.
         Some(MemoryNeed::OtherUse)
     } else {

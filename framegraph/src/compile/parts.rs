@@ -113,7 +113,9 @@ impl Parts {
         }
         let planes = row.parts / (row.mips * row.layers);
         let (mips, layers) = (range.mip_range(row.mips), range.layer_range(row.layers));
-        let (mips, layers) = (mips.start..mips.end.min(row.mips), layers.start..layers.end.min(row.layers));
+        // Slices of a three-dimensional texture are one layer.
+        let layers = if row.layers == 1 { 0..1 } else { layers.start..layers.end.min(row.layers) };
+        let mips = mips.start..mips.end.min(row.mips);
         if mips.is_empty() {
             return;
         }

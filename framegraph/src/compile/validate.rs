@@ -5,6 +5,7 @@
 
 mod attachments;
 mod clears;
+mod device;
 
 use super::error::{CompileError, CompileErrors, CompileReason};
 use super::framebuffer::framebuffer_of_pass;
@@ -34,7 +35,11 @@ pub(crate) fn validate(
         contents(graph, parts, measures, defined, errors);
     }
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MAX_TILE_BYTES;
+    let allowed = device::Allowed::on(caps);
     for (index, pass) in graph.passes.iter().enumerate() {
+        if !allowed.clearly(graph, &measures.rows, pass) {
+            device::accesses(graph, caps, &measures.rows, PassId::at(index), errors);
+        }
         // Fast path: a pass with one color attachment with one part can only have a wrong clear value.
         let plain = roomy && !pass.sole_color.is_none();
         if !plain && pass.kind == PassKind::Raster {
@@ -42,7 +47,7 @@ pub(crate) fn validate(
             attachments::attachments(graph, caps, &measures.rows, PassId::at(index), framebuffer, errors);
         }
         if pass.flags.has(PassFlags::CLEARS) {
-            clears::clears(graph, PassId::at(index), errors);
+            clears::clears(graph, caps, PassId::at(index), errors);
         }
     }
 }
@@ -71,6 +76,7 @@ fn contents(graph: &Tables, parts: &Parts, measures: &Measures, defined: &mut Ve
         let accesses = pass.accesses.of(&graph.accesses);
         // Accesses of one pass do not conflict, so their order does not matter.
         for access in accesses {
+            // A slice of a three-dimensional texture may be the first one that is written.
             if access.mode.needs_contents() && parts.any(defined, access.resource, access.range, |d| !d) {
                 errors.push(|| unwritten(graph, Some(access.kind), PassId::at(index), access.resource, access.range));
             }

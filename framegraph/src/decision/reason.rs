@@ -235,6 +235,9 @@ causes! {
     OtherUse "other_use", "it is not only used as an attachment", "use it only as an attachment";
     /// Several layers are allowed if the device supports memoryless layers.
     SeveralParts "several_parts", "it has several levels or layers", "split it into textures with one level and layer";
+    /// The view has the sRGB twin of the texture's format, or the texture that of a view.
+    View "view", "it is viewed in another format, which the device does not support for memoryless attachments",
+        "declare it in the format of the view";
     LoadedOrStored "loaded_or_stored", "its contents are loaded or stored",
         "clear or overwrite it, and do not read it after the step";
 }

@@ -76,7 +76,7 @@ fn write_arrows(plan: &Plan, pass: PassId, out: &mut String) -> std::fmt::Result
     for access in graph.accesses_of(pass) {
         let (p, r) = (pass.index(), access.resource.index());
         let word = access.kind.word();
-        if access.mode.needs_contents() {
+        if access.needs_contents() {
             writeln!(out, "  r{r} -> p{p} [label=\"{word}\"{style}];")?;
         }
         if access.mode.writes() {

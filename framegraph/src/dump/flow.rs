@@ -25,7 +25,7 @@ pub fn data_flow(graph: &Graph) -> Vec<Flow> {
     for to in graph.pass_ids() {
         let first = flows.len();
         let accesses = graph.accesses_of(to);
-        for access in accesses.iter().filter(|a| a.mode.needs_contents()) {
+        for access in accesses.iter().filter(|a| a.needs_contents()) {
             let resource = access.resource;
             let overlaps = |(_, w): &&(PassId, &Access)| graph.overlap(resource, &w.range, &access.range);
             let writes = visible[resource.index()].iter().filter(overlaps);

@@ -27,7 +27,7 @@ pub fn bipartite(graph: &Graph) -> DiGraph<Node, AccessId> {
         for at in row.accesses.range() {
             let access = &graph.accesses()[at];
             let resource = resources[access.resource.index()];
-            if access.mode.needs_contents() {
+            if access.needs_contents() {
                 out.add_edge(resource, pass, AccessId::at(at));
             }
             if access.mode.writes() {

@@ -235,7 +235,7 @@ fn intent(graph: &Graph, access: &Access) -> Option<String> {
 }
 
 fn range_fields(range: &Range, fields: &mut Vec<String>) {
-    let Range { mip, mips, layer, layers, aspect, view, bytes: _ } = *range;
+    let Range { mip, mips, layer, layers, aspect, view, bytes: _, slice: _ } = *range;
     let all = Range::ALL;
     if mip != 0 || mips == 1 {
         fields.push(format!("mip: {mip}"));

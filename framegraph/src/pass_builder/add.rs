@@ -114,7 +114,7 @@ impl PassBuilder<'_> {
         if desc.kind == AccessKind::Color {
             let slot = u32::from(desc.slot);
             self.colors = self.colors.max(slot + 1);
-            self.sole = if alone && allowed.has(Kinds::ONE_PART) { access } else { AccessId::NONE };
+            self.sole = if alone && allowed.has(Kinds::ONE_PART) && !range.slice { access } else { AccessId::NONE };
         }
         let (writer, reader, allowed) = (self.pass, PassId::NONE, allowed.union(Kinds::DEFINED));
         self.tables.resources[resource.index()].current = version;

@@ -102,13 +102,17 @@ fn outside(buffer: &BufferDesc, r: &Request) -> Option<DeclareReason> {
 
 fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
     let access = r.desc.kind;
-    let Range { mip, mips, layer, layers, aspect, view, bytes: _ } = r.range;
+    let Range { mip, mips, layer, layers, aspect, view, bytes: _, slice: _ } = r.range;
     let outside = |first: u32, count: u32, all: bool, has: u32| {
         if all { first >= has } else { count == 0 || first + count > has }
     };
+    // Slices of three-dimensional textures are numbered like layers. Only attachments can name one.
+    let volume = t.dimension == Dimension::D3;
+    let slices = if volume { halved(t.layers.into(), mip.into()) } else { t.tracked_layers() };
+    let names_slice = volume && (layer != 0 || layers != u16::MAX) && slices > 1;
     let has_mips = if t.mips == TextureDesc::ALL_MIPS { 32 } else { u32::from(t.mips) };
     if outside(mip.into(), mips.into(), mips == u8::MAX, has_mips)
-        || outside(layer.into(), layers.into(), layers == u16::MAX, t.tracked_layers())
+        || outside(layer.into(), layers.into(), layers == u16::MAX, slices)
         || !aspect.exists_in(t.format)
     {
         return Some(DeclareReason::OutOfRange { asked: r.range, texture: *t });
@@ -118,7 +122,8 @@ fn texture_incapable(t: &TextureDesc, r: &Request) -> Option<DeclareReason> {
     if in_tile && !one_level {
         return Some(DeclareReason::NotOneLevel { access });
     }
-    if in_tile && t.dimension == Dimension::D3 && halved(t.layers.into(), mip.into()) > 1 {
+    let one_slice = access == AccessKind::Color && layers == 1;
+    if volume && slices > 1 && !one_slice && (in_tile || names_slice) {
         return Some(DeclareReason::Slices { access });
     }
     let seen = view.unwrap_or(t.format);

@@ -176,6 +176,6 @@ fn devices_with_automatic_barriers_get_none() {
     let mut g = Graph::new();
     let out = screen(&mut g);
     g.add_fn("draw", |p| p.color(out, BLACK)).unwrap();
-    assert!(plan(&g, &Caps::wgpu()).barriers().is_empty());
+    assert!(plan(&g, &wgpu()).barriers().is_empty());
     assert_eq!(plan(&g, &explicit()).barriers().len(), 1);
 }

@@ -189,7 +189,7 @@ fn needed(graph: &Graph) -> BTreeSet<PassId> {
 fn culling_keeps_what_is_needed_and_nothing_else() {
     let mut culled = 0;
     for (seed, graph) in tiny(1500) {
-        let plan = compiled(&graph, &Caps::wgpu(), &declared());
+        let plan = compiled(&graph, &crate::support::wgpu(), &declared());
         let needed = needed(&graph);
         for pass in graph.pass_ids() {
             let found = !plan.is_culled(pass);

@@ -35,7 +35,7 @@ fn every_access_of_a_buffer_has_its_method() {
     use AccessKind::*;
     let kinds: Vec<_> = g.accesses().iter().map(|a| a.kind).collect();
     assert_eq!(kinds, [CopyTarget, StorageWrite, Uniform, Vertex, Index, Indirect, StorageRead, CopySource]);
-    checked(&g, &Caps::wgpu());
+    checked(&g, &wgpu());
 }
 
 /// Arguments and a counter in one buffer: two passes write one each, a third reads the arguments.
@@ -57,12 +57,12 @@ fn arguments(counter: Option<(u64, u64)>) -> Graph {
 fn writing_some_bytes_leaves_the_others() {
     // The counter is a separate range: it is not used, and the arguments are still valid.
     let g = arguments(None);
-    let plan = checked(&g, &Caps::wgpu());
+    let plan = checked(&g, &wgpu());
     let kept: Vec<_> = g.pass_ids().map(|p| !plan.is_culled(p)).collect();
     assert_eq!(kept, [true, false, true]);
     // With overlapping ranges, both passes contribute to the arguments.
     let g = arguments(Some((16, 4)));
-    assert_eq!(checked(&g, &Caps::wgpu()).counts().culled, 0);
+    assert_eq!(checked(&g, &wgpu()).counts().culled, 0);
     // A range that covers the arguments replaces them.
     let g = arguments(Some((0, 256)));
     let plan = checked(&g, &Caps::desktop());
@@ -81,7 +81,7 @@ fn bytes_that_nobody_wrote_are_not_there() {
         p.uniform(part).map(drop)
     };
     g.add_fn("within", |p| read(p, b.bytes(4, 28))).unwrap();
-    assert_eq!(check(&plan(&g, &Caps::wgpu())), Ok(()));
+    assert_eq!(check(&plan(&g, &wgpu())), Ok(()));
     g.add_fn("all", |p| read(p, b.into())).unwrap();
     g.add_fn("beyond", |p| read(p, b.bytes(28, 8))).unwrap();
     let found: Vec<_> = errors(&g).into_iter().map(|e| e.pass.map(|p| p.name).unwrap_or_default()).collect();
@@ -141,7 +141,7 @@ fn a_pass_has_all_of_a_buffer_in_one_use() {
 /// Raster passes that use one buffer in two ways do not share a step, whatever their byte ranges.
 #[test]
 fn a_step_has_all_of_a_buffer_in_one_use() {
-    for caps in [Caps::wgpu(), Caps::tiler(), Caps::desktop()] {
+    for caps in [wgpu(), Caps::tiler(), Caps::desktop()] {
         let mut g = Graph::new();
         let (a, b) = (g.texture("a", hdr()), g.buffer("b", 1024));
         let b = g.add_fn("fill", |p| p.storage_write_buffer(b, ZERO)).unwrap();
@@ -173,11 +173,11 @@ fn sizes_follow_the_frame() {
     })
     .unwrap();
     // 64 × 32 texels are 4 × 2 tiles of 8 bytes.
-    let plan = checked(&g, &Caps::wgpu());
+    let plan = checked(&g, &wgpu());
     assert_eq!(plan.resources()[0].bytes, 64);
     // In a smaller frame, the declared range exceeds the buffer.
     let small = Options::for_frame(16, 16);
-    let refused = compile(&g, &Caps::wgpu(), &small, &mut Scratch::new(), &mut Plan::new()).unwrap_err();
+    let refused = compile(&g, &wgpu(), &small, &mut Scratch::new(), &mut Plan::new()).unwrap_err();
     let first = &refused.listed[0];
     assert_eq!(first.reason, CompileReason::NoSuchBytes { offset: 0, bytes: 64, size: 8 });
     assert_eq!(first.pass.as_ref().map(|p| p.name.as_str()), Some("fill"));
@@ -193,10 +193,10 @@ fn sizes_follow_the_frame() {
         })
         .unwrap();
         let options = Options::for_frame(frame[0], frame[1]);
-        compile(&g, &Caps::wgpu(), &options, &mut Scratch::new(), &mut Plan::new()).unwrap();
+        compile(&g, &wgpu(), &options, &mut Scratch::new(), &mut Plan::new()).unwrap();
     }
     let none = Options::for_frame(0, 16);
-    assert!(compile(&g, &Caps::wgpu(), &none, &mut Scratch::new(), &mut Plan::new()).is_err());
+    assert!(compile(&g, &wgpu(), &none, &mut Scratch::new(), &mut Plan::new()).is_err());
 }
 
 #[test]
@@ -204,13 +204,13 @@ fn a_plan_of_which_nothing_runs_says_so() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
     let a = g.add_fn("draw", |p| p.color(a, BLACK)).unwrap();
-    let idle = plan(&g, &Caps::wgpu());
+    let idle = plan(&g, &wgpu());
     assert_eq!(idle.warnings().collect::<Vec<_>>(), [Warning::NothingRuns]);
     let outputs = [dump::text(&idle), dump::json(&idle, ""), dump::dot(&idle), dump::mermaid(&idle), dump::svg(&idle)];
     for output in outputs {
         assert!(output.contains("export a resource"), "{output}");
     }
     g.export(a).unwrap();
-    assert_eq!(plan(&g, &Caps::wgpu()).warnings().count(), 0);
-    assert_eq!(plan(&Graph::new(), &Caps::wgpu()).warnings().count(), 0, "an empty graph gives no warning");
+    assert_eq!(plan(&g, &wgpu()).warnings().count(), 0);
+    assert_eq!(plan(&Graph::new(), &wgpu()).warnings().count(), 0, "an empty graph gives no warning");
 }

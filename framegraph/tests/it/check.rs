@@ -32,7 +32,7 @@ fn a_culled_writer_hides_what_it_writes_over() {
     let t = g.add_fn("first", |p| p.color(t, BLACK)).unwrap();
     let t = g.add_fn("second", |p| p.color(t, BLACK)).unwrap();
     g.add_fn("reader", |p| p.sampled(t).map(drop)).unwrap();
-    let plan = clean(&g, &Caps::wgpu());
+    let plan = clean(&g, &wgpu());
     let id = |name| g.find_pass(name).unwrap();
     let t = g.find_resource("t").unwrap();
     let expected = Reason::CulledOverwritten(t, id("second"));
@@ -46,13 +46,13 @@ fn an_empty_plan_is_not_a_plan() {
     let report = check::examine(&Plan::new());
     assert_eq!(report.violations.len(), 1, "{report}");
     assert_eq!(report.violations[0].rule, check::Rule::Structure);
-    let empty = plan(&Graph::new(), &Caps::wgpu());
+    let empty = plan(&Graph::new(), &wgpu());
     assert_eq!(check(&empty), Ok(()));
 }
 
 #[test]
 fn the_frames_of_the_other_tests_are_clean() {
-    for caps in [Caps::wgpu(), Caps::tiler(), Caps::desktop()] {
+    for caps in [wgpu(), Caps::tiler(), Caps::desktop()] {
         clean(&crate::merging::deferred(), &caps);
     }
 }
@@ -118,7 +118,9 @@ fn the_frames_of_the_repository_are_clean_under_every_switch() {
         let name = path.display().to_string();
         let file = file::GraphFile::parse(&name, &text).unwrap_or_else(|e| panic!("{e}"));
         let graph = file.graph(&[]).unwrap_or_else(|e| panic!("{e}"));
-        for (preset, number) in Caps::PRESETS.iter().cycle().zip((0..generate::OPTIONS).step_by(7)) {
+        for (preset, number) in
+            Caps::PRESETS.iter().filter(|name| **name != "wgpu").cycle().zip((0..generate::OPTIONS).step_by(7))
+        {
             let frame = file.frame().unwrap_or([1920, 1080]);
             let options = Options { frame, ..generate::options_of(number) };
             let plan = plan_with(&graph, &Caps::preset(preset).unwrap(), &options);
@@ -131,7 +133,7 @@ fn the_frames_of_the_repository_are_clean_under_every_switch() {
 #[test]
 fn a_volume_has_more_levels_than_its_depth_has_bits() {
     let mut g = Graph::new();
-    let desc = TextureDesc::new(Extent::absolute(1 << 20, 1), Format::R8Unorm).layers(64).mips(TextureDesc::ALL_MIPS);
+    let desc = TextureDesc::new(Extent::absolute(2048, 1), Format::R8Unorm).layers(64).mips(TextureDesc::ALL_MIPS);
     let volume =
         g.import_texture("volume", TextureDesc { dimension: Dimension::D3, ..desc }, Entry::Defined, Exit::Keep);
     g.add_fn("look", |p| {
@@ -139,5 +141,5 @@ fn a_volume_has_more_levels_than_its_depth_has_bits() {
         p.sampled(volume).map(drop)
     })
     .unwrap();
-    clean(&g, &Caps::wgpu());
+    clean(&g, &wgpu());
 }

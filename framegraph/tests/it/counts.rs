@@ -43,7 +43,7 @@ fn unmerged_prepass_stores_and_loads_depth() {
     // - prepass: depth clear -> store, so 1 clear and 1 store.
     // - color: depth load (read-only) -> discard; hdr clear -> store, so 1 load, 1 clear, 1 store and 1 discard.
     // - post: screen dont_care -> store, so 1 store.
-    let plan = plan(&prepass_frame(1, false), &Caps::wgpu());
+    let plan = plan(&prepass_frame(1, false), &wgpu());
     let c = plan.counts();
     assert_eq!((c.unresolves, c.resolves, c.clears, c.discards, c.multisample_resolves), (1, 3, 2, 1, 0));
     assert_eq!((c.steps, c.memoryless, c.culled), (3, 0, 0));
@@ -53,7 +53,7 @@ fn unmerged_prepass_stores_and_loads_depth() {
 #[test]
 fn merged_prepass_keeps_depth_in_the_tile() {
     // prepass + color: depth clear -> discard, hdr clear -> store. post: screen -> store.
-    let plan = plan(&prepass_frame(1, true), &Caps::wgpu());
+    let plan = plan(&prepass_frame(1, true), &wgpu());
     let c = plan.counts();
     assert_eq!((c.unresolves, c.resolves, c.clears, c.discards), (0, 2, 2, 1));
     assert_eq!((c.steps, c.passes, c.memoryless), (2, 3, 1));
@@ -64,7 +64,7 @@ fn merged_prepass_keeps_depth_in_the_tile() {
 fn multisampling_resolves_in_the_tile() {
     // prepass + color: depth clear -> discard, hdr_ms clear -> discard, hdr is its resolve target. post: screen ->
     // store.
-    let plan = plan(&prepass_frame(4, true), &Caps::wgpu());
+    let plan = plan(&prepass_frame(4, true), &wgpu());
     let c = plan.counts();
     assert_eq!((c.unresolves, c.resolves, c.clears, c.discards, c.multisample_resolves), (0, 2, 2, 2, 1));
     assert_eq!(c.memoryless, 2);
@@ -104,7 +104,7 @@ fn a_mip_pyramid_is_followed_level_by_level() {
         p.color(screen, Intent::Overwrite)
     })
     .unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     // No pass reads level 3: its pass is culled, and levels 0, 1, 2 are stored.
     let c = plan.counts();
     assert_eq!((c.unresolves, c.resolves, c.culled), (0, 4, 1));
@@ -147,7 +147,7 @@ fn modify_loads_what_an_earlier_step_stored() {
         })
         .unwrap();
     g.export(a).unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     assert_eq!(ops(&plan, "a"), [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, StoreOp::Store)]);
     let draw = plan.graph().find_pass("draw").unwrap();
     let a = plan.graph().find_resource("a").unwrap();
@@ -161,7 +161,7 @@ fn equal_graphs_give_equal_text_whatever_the_scratch_held() {
     let mut texts = Vec::new();
     for samples in [4, 1, 4] {
         let graph = prepass_frame(samples, samples == 4);
-        compile(&graph, &Caps::wgpu(), &options(), &mut scratch, &mut plan).unwrap();
+        compile(&graph, &wgpu(), &options(), &mut scratch, &mut plan).unwrap();
         texts.push(dump::text(&plan) + &dump::dot(&plan));
     }
     assert_eq!(texts[0], texts[2]);
@@ -171,7 +171,7 @@ fn equal_graphs_give_equal_text_whatever_the_scratch_held() {
 #[test]
 fn an_equal_graph_is_recognised() {
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
-    let caps = Caps::wgpu();
+    let caps = wgpu();
     let mut again = |g: &Graph, o: &Options| recompile(g, &caps, o, &mut scratch, &mut plan).unwrap();
     assert!(again(&prepass_frame(4, true), &options()));
     assert!(!again(&prepass_frame(4, true), &options()));
@@ -197,7 +197,7 @@ fn an_average_that_nobody_reads_is_not_made() {
         p.color(screen, Intent::Overwrite)
     })
     .unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     let counts = plan.counts();
     assert_eq!((counts.multisample_resolves, counts.discards, counts.resolves), (0, 0, 2), "{}", dump::text(&plan));
 }

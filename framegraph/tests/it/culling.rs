@@ -18,7 +18,7 @@ fn culling_cascades_and_says_why() {
     let _ = filter(&mut g, "third", b, Format::R8Unorm);
     let kept = filter(&mut g, "kept", a, Format::R8Unorm);
     g.export(kept).unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     let id = |name| g.find_pass(name).unwrap();
     let res = |name| g.find_resource(name).unwrap();
     assert_eq!(verdict(&plan, "third"), Reason::CulledUnread(res("third_out")));
@@ -34,7 +34,7 @@ fn what_is_written_over_is_dropped() {
     let screen = screen(&mut g);
     let screen = g.add_fn("loading_screen", |p| p.color(screen, BLACK)).unwrap();
     g.add_fn("scene", |p| p.color(screen, BLACK)).unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     let (scene, screen) = (g.find_pass("scene").unwrap(), g.find_resource("screen").unwrap());
     assert_eq!(verdict(&plan, "loading_screen"), Reason::CulledOverwritten(screen, scene));
     assert_eq!(verdict(&plan, "scene"), Reason::KeptImport(screen));
@@ -54,7 +54,7 @@ fn side_effects_keep_what_they_read_alive_until_they_run() {
         p.sampled(a).map(drop)
     })
     .unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     assert_eq!(verdict(&plan, "query"), Reason::KeptSideEffect);
     let row = plan.resources()[g.find_resource("a").unwrap().index()];
     assert_eq!(row.last, plan.pass_steps()[g.find_pass("query").unwrap().index()]);
@@ -75,7 +75,7 @@ fn a_dead_writer_does_not_hide_a_live_one() {
         })
         .unwrap();
     g.export(out).unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     assert!(matches!(verdict(&plan, "dead"), Reason::CulledUnread(_)));
     assert!(matches!(verdict(&plan, "base"), Reason::KeptReadBy(..)));
 }
@@ -92,7 +92,7 @@ fn a_write_into_a_discarded_import_that_nobody_reads_is_culled() {
         p.color(out, BLACK)
     })
     .unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     assert_eq!(check(&plan), Ok(()));
     let id = g.find_resource("a").unwrap();
     assert_eq!(verdict(&plan, "alone"), Reason::CulledUnread(id));
@@ -104,7 +104,7 @@ fn culling_off_keeps_everything() {
     let mut g = Graph::new();
     let a = g.texture("a", hdr());
     let _ = g.add_fn("alone", |p| p.color(a, BLACK)).unwrap();
-    let plan = plan_with(&g, &Caps::wgpu(), &Options { cull: false, ..options() });
+    let plan = plan_with(&g, &wgpu(), &Options { cull: false, ..options() });
     assert_eq!((plan.counts().passes, plan.counts().culled), (1, 0));
     assert_eq!(verdict(&plan, "alone"), Reason::KeptCullingOff);
 }
@@ -119,7 +119,7 @@ fn a_history_keeps_its_writer_and_reads_the_frame_before() {
         p.color(history, Intent::Overwrite)
     })
     .unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     assert!(matches!(verdict(&plan, "taa"), Reason::KeptHistory(_)));
     assert_eq!(placement(&plan, "taa"), Placement::Own);
     let texels = u64::from(FRAME[0] * FRAME[1]);

@@ -29,7 +29,7 @@ fn interleaved(a: Entry) -> Graph {
 
 #[test]
 fn what_is_loaded_says_whose_contents_it_holds() {
-    let plan = plan(&interleaved(Entry::Defined), &Caps::wgpu());
+    let plan = plan(&interleaved(Entry::Defined), &wgpu());
     assert_eq!(check(&plan), Ok(()));
     let loads: Vec<_> = sentences(&plan, "a").into_iter().filter(|s| s.starts_with("load")).collect();
     assert_eq!(
@@ -44,7 +44,7 @@ fn what_is_loaded_says_whose_contents_it_holds() {
 #[test]
 fn a_pass_that_moves_says_behind_which_and_what_for() {
     let optimized = Options { order: Order::Optimized, ..options() };
-    let plan = plan_with(&interleaved(Entry::Defined), &Caps::wgpu(), &optimized);
+    let plan = plan_with(&interleaved(Entry::Defined), &wgpu(), &optimized);
     assert_eq!(check(&plan), Ok(()));
     assert_eq!(steps(&plan), [vec!["first", "again"], vec!["between"]]);
     let moved =
@@ -63,7 +63,7 @@ fn what_is_not_shared_says_that_sharing_is_off() {
     let out = filter(&mut g, "show", a, Format::R8Unorm);
     g.export(out).unwrap();
     let place = |alias| {
-        let plan = plan_with(&g, &Caps::wgpu(), &Options { alias, ..options() });
+        let plan = plan_with(&g, &wgpu(), &Options { alias, ..options() });
         assert_eq!(check(&plan), Ok(()));
         sentences(&plan, "a").into_iter().find(|s| s.starts_with("resource"))
     };
@@ -88,7 +88,7 @@ fn an_average_that_is_not_made_says_so() {
         p.color(out, Intent::Overwrite)
     })
     .unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     assert!(check::examine(&plan).is_clean());
     let said = "pass `draw`: does not resolve into `average` because no pass reads it".to_owned();
     assert!(sentences(&plan, "draw").contains(&said), "{}", dump::text(&plan));
@@ -97,7 +97,7 @@ fn an_average_that_is_not_made_says_so() {
     assert_eq!(steps(&plan), [vec!["draw", "more"], vec!["look"]]);
     assert_eq!((plan.attachments().len(), plan.counts().multisample_resolves), (2, 0));
     // Without culling it is performed as declared.
-    let plan = plan_with(&g, &Caps::wgpu(), &Options { cull: false, ..options() });
+    let plan = plan_with(&g, &wgpu(), &Options { cull: false, ..options() });
     assert_eq!(check(&plan), Ok(()));
     assert_eq!((plan.counts().steps, split_reason(&plan, "more")), (3, Some(Refusal::ResolveBetween)));
 }
@@ -161,20 +161,20 @@ fn hints_are_true_of_device_options_and_passes() {
     let mend = "use a device that supports it, or fix what prevents inlining of the pass";
     let off = Options { inline: false, ..options() };
     let cases = [
-        (one, Caps::wgpu(), options(), declare),
+        (one, wgpu(), options(), declare),
         // Without inlining.
         (one, Caps::desktop(), options(), choose),
-        (one, Caps::wgpu(), off, choose),
+        (one, wgpu(), off, choose),
         (Case { pointwise: true, ..one }, Caps::desktop(), options(), choose),
-        (Case { pointwise: true, ..one }, Caps::wgpu(), off, choose),
+        (Case { pointwise: true, ..one }, wgpu(), off, choose),
         // Passes that would not be inlined if they were point-wise.
-        (Case { inputs: 2, ..one }, Caps::wgpu(), options(), choose),
-        (Case { outputs: 2, ..one }, Caps::wgpu(), options(), choose),
-        (Case { samples: true, ..one }, Caps::wgpu(), options(), choose),
-        (Case { side_effect: true, ..one }, Caps::wgpu(), options(), choose),
-        (Case { modifies: true, ..one }, Caps::wgpu(), options(), choose),
+        (Case { inputs: 2, ..one }, wgpu(), options(), choose),
+        (Case { outputs: 2, ..one }, wgpu(), options(), choose),
+        (Case { samples: true, ..one }, wgpu(), options(), choose),
+        (Case { side_effect: true, ..one }, wgpu(), options(), choose),
+        (Case { modifies: true, ..one }, wgpu(), options(), choose),
         // Point-wise, but the producer does not accept an epilogue.
-        (Case { pointwise: true, ..one }, Caps::wgpu(), options(), mend),
+        (Case { pointwise: true, ..one }, wgpu(), options(), mend),
     ];
     for (index, (case, caps, options, expected)) in cases.iter().enumerate() {
         assert_eq!(hint(*case, caps, options), *expected, "case {index}");
@@ -225,7 +225,7 @@ fn hints_of_stores_are_true_of_device_options_and_reader() {
         (AccessKind::Sampled, Caps::desktop(), options(), device),
         (AccessKind::Sampled, Caps::tiler(), apart, device),
         (AccessKind::Sampled, Caps::tiler(), options(), general),
-        (AccessKind::Sampled, Caps::wgpu(), options(), general),
+        (AccessKind::Sampled, wgpu(), options(), general),
         (AccessKind::SamePixel, Caps::tiler(), options(), share),
         (AccessKind::StorageRead, Caps::tiler(), options(), raster),
     ];

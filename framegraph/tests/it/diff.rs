@@ -40,7 +40,7 @@ fn changed() -> Graph {
 
 #[test]
 fn changes_are_named_with_their_reasons() {
-    let (a, b) = (plan(&frame(), &Caps::wgpu()), plan(&changed(), &Caps::wgpu()));
+    let (a, b) = (plan(&frame(), &wgpu()), plan(&changed(), &wgpu()));
     let d = diff(&a, &b);
     assert_eq!(
         (d.passes_added.as_slice(), d.passes_removed.as_slice()),
@@ -91,7 +91,7 @@ fn culls_in_both_directions_are_told_apart() {
             p.color(out, Intent::Overwrite)
         })
         .unwrap();
-        plan(&g, &Caps::wgpu())
+        plan(&g, &wgpu())
     };
     let d = diff(&make(true), &make(false));
     assert_eq!(d.culls.len(), 1);
@@ -112,7 +112,7 @@ fn passes_of_one_name_are_matched_in_order() {
             let t = g.add_fn("down", |p| p.color(t, BLACK)).unwrap();
             g.export(t).unwrap();
         }
-        plan(&g, &Caps::wgpu())
+        plan(&g, &wgpu())
     };
     let d = diff(&make(2), &make(4));
     assert_eq!((d.passes_added.len(), d.passes_removed.len(), d.resources_added.len()), (2, 0, 2));
@@ -121,7 +121,7 @@ fn passes_of_one_name_are_matched_in_order() {
 #[test]
 fn a_device_can_be_compared_with_another() {
     let graph = frame();
-    let d = diff(&plan(&graph, &Caps::wgpu()), &plan(&graph, &Caps::desktop()));
+    let d = diff(&plan(&graph, &wgpu()), &plan(&graph, &Caps::desktop()));
     assert!(d.passes_added.is_empty() && d.merges.is_empty());
     let depth = d.resources.iter().find(|r| r.what == "depth").expect("it needs memory there");
     assert!(depth.before.ends_with("memoryless") && depth.after.ends_with("slot"), "{depth:?}");

@@ -61,7 +61,7 @@ fn notes_are_told() {
     g.scope("left", |g| g.note("glow", format_args!("asked for, {} wide\n", 3)));
     g.note("mist", "left out: nothing is far away");
     assert!(!g.same_as(&plain));
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     let text = dump::text(&plan);
     let expected = "decisions:\n  effect `left/glow`: asked for, 3 wide\\n\n  effect `mist`: left out: nothing is far away\n  pass";
     assert!(text.contains(expected), "{text}");
@@ -117,7 +117,7 @@ decisions:
   resource `idle_out`: no kept pass accesses it
   resource `hdr`: first resource in its slot
 ";
-    assert_eq!(dump::text(&plan(&frame(), &Caps::wgpu())), expected);
+    assert_eq!(dump::text(&plan(&frame(), &wgpu())), expected);
 }
 
 #[test]
@@ -169,7 +169,7 @@ pub fn hostile() -> Graph {
 
 #[test]
 fn dot_mermaid_and_text_keep_names_in_their_places() {
-    let p = plan(&hostile(), &Caps::wgpu());
+    let p = plan(&hostile(), &wgpu());
     for line in dump::dot(&p).lines() {
         let bare = line.replace("\\\\", "").replace("\\\"", "");
         assert_eq!(bare.matches('"').count() % 2, 0, "{line}");
@@ -215,10 +215,10 @@ fn a_refused_plan_reads_as_an_empty_one() {
         p.color(out, Intent::Overwrite)
     })
     .unwrap();
-    let good = plan(&frame(), &Caps::wgpu());
+    let good = plan(&frame(), &wgpu());
     // Into a new plan, and into one that contains another frame.
     for mut refused in [Plan::new(), good.clone()] {
-        let outcome = compile(&bad, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut refused);
+        let outcome = compile(&bad, &wgpu(), &options(), &mut Scratch::new(), &mut refused);
         assert!(outcome.is_err(), "no pass writes the resource that is read");
         assert!(refused.graph().passes().is_empty() && refused.steps().is_empty() && refused.decisions().is_empty());
         assert!(dump::text(&refused).starts_with("plan 2 for wgpu at 64x32\ncounts: 0 loads, 0 stores,"));

@@ -10,7 +10,7 @@ fn sized(width: u32, height: u32) -> TextureDesc {
 }
 
 fn checked(graph: &Graph) -> Plan {
-    let plan = plan(graph, &Caps::wgpu());
+    let plan = plan(graph, &wgpu());
     assert_eq!(check(&plan), Ok(()));
     plan
 }

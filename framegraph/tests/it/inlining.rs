@@ -52,7 +52,7 @@ fn frame(case: &Case) -> Graph {
 
 #[test]
 fn grading_becomes_an_epilogue() {
-    let p = plan(&frame(&SOUND), &Caps::wgpu());
+    let p = plan(&frame(&SOUND), &wgpu());
     let c = p.counts();
     assert_eq!((c.steps, c.unresolves, c.resolves, c.inlined, c.memoryless), (1, 0, 1, 1, 1), "{}", dump::text(&p));
     assert_eq!(placement(&p, "hdr"), Placement::Inlined);
@@ -63,7 +63,7 @@ fn grading_becomes_an_epilogue() {
 
 #[test]
 fn with_multisampling_each_sample_is_graded_before_the_resolve() {
-    let p = plan(&frame(&Case { samples: 4, ..SOUND }), &Caps::wgpu());
+    let p = plan(&frame(&Case { samples: 4, ..SOUND }), &wgpu());
     let c = p.counts();
     assert_eq!((c.steps, c.unresolves, c.resolves, c.multisample_resolves), (1, 0, 1, 1), "{}", dump::text(&p));
     assert_eq!((placement(&p, "hdr"), placement(&p, "hdr_ms")), (Placement::Inlined, Placement::Memoryless));
@@ -79,7 +79,7 @@ fn unsound_cases_fall_back_with_a_reason() {
         (Case { other_reader: true, ..SOUND }, Refusal::NeededAsTexture),
     ];
     for (case, refusal) in cases {
-        let p = plan(&frame(&case), &Caps::wgpu());
+        let p = plan(&frame(&case), &wgpu());
         let grade = p.graph().find_pass("grade").unwrap();
         let reason = p.reasons(Subject::Pass(grade)).find(|r| matches!(r, Reason::NotInlined(..)));
         let scene = p.graph().find_pass("scene").unwrap();
@@ -87,9 +87,9 @@ fn unsound_cases_fall_back_with_a_reason() {
         assert_eq!(p.counts().inlined, 0);
         assert!(matches!(placement(&p, "hdr"), Placement::Slot(_)));
     }
-    let p = plan(&frame(&Case { pointwise: false, ..SOUND }), &Caps::wgpu());
+    let p = plan(&frame(&Case { pointwise: false, ..SOUND }), &wgpu());
     assert_eq!((p.counts().inlined, p.counts().steps), (0, 2));
-    let p = plan_with(&frame(&SOUND), &Caps::wgpu(), &Options { inline: false, ..options() });
+    let p = plan_with(&frame(&SOUND), &wgpu(), &Options { inline: false, ..options() });
     assert_eq!((p.counts().inlined, p.counts().steps), (0, 2));
 }
 
@@ -120,7 +120,7 @@ fn chains_of_pointwise_passes_collapse() {
         p.color(out, Intent::Overwrite)
     })
     .unwrap();
-    let p = plan(&g, &Caps::wgpu());
+    let p = plan(&g, &wgpu());
     assert_eq!(steps(&p), [["scene", "expose", "grade", "tonemap"]]);
     assert_eq!((p.counts().inlined, p.counts().resolves), (3, 1), "{}", dump::text(&p));
 }

@@ -25,10 +25,10 @@ fn the_same_attachments_are_one_step() {
     let a = overlay(&mut g, "particles", a);
     let a = overlay(&mut g, "ui", a);
     g.export(a).unwrap();
-    let p = plan(&g, &Caps::wgpu());
+    let p = plan(&g, &wgpu());
     assert_eq!(steps(&p), [["scene", "particles", "ui"]]);
     assert_eq!((p.counts().unresolves, p.counts().resolves), (0, 1));
-    let off = plan_with(&g, &Caps::wgpu(), &Options { merge: false, ..options() });
+    let off = plan_with(&g, &wgpu(), &Options { merge: false, ..options() });
     assert_eq!((off.counts().steps, off.counts().unresolves, off.counts().resolves), (3, 2, 3));
     assert_eq!(split_reason(&off, "ui"), Some(Refusal::Disabled));
 }
@@ -87,7 +87,7 @@ fn every_refusal_has_its_case() {
         if g.resource_of(a) != g.resource_of(b) {
             g.export(a).unwrap();
         }
-        let p = plan(&g, &Caps::wgpu());
+        let p = plan(&g, &wgpu());
         assert_eq!(p.counts().steps, 2, "{refusal:?}");
         assert_eq!(split_reason(&p, "second"), Some(refusal));
     }
@@ -112,7 +112,7 @@ fn exchanged(slots: [u8; 2]) -> Graph {
 fn the_same_targets_in_other_slots_merge_where_slots_are_mapped() {
     for slots in [[0, 1], [1, 0], [2, 5]] {
         let g = exchanged(slots);
-        for (caps, mapped) in [(Caps::desktop(), true), (Caps::tiler(), true), (Caps::wgpu(), false)] {
+        for (caps, mapped) in [(Caps::desktop(), true), (Caps::tiler(), true), (wgpu(), false)] {
             let p = plan(&g, &caps);
             assert!(check::examine(&p).is_clean());
             let merges = mapped || slots == [0, 1];
@@ -138,17 +138,17 @@ fn slots_that_a_pass_leaves_out_are_masked() {
         .unwrap();
     g.export(a).unwrap();
     g.export(b).unwrap();
-    let p = plan(&g, &Caps::wgpu());
+    let p = plan(&g, &wgpu());
     assert!(check::examine(&p).is_clean());
     assert_eq!(steps(&p), [["first", "second"]]);
-    let few = plan(&g, &Caps { max_color_attachments: 1, ..Caps::wgpu() });
+    let few = plan(&g, &Caps { max_color_bytes_per_sample: 8, ..wgpu() });
     assert_eq!(split_reason(&few, "second"), Some(Refusal::TooManyAttachments));
 }
 
 #[test]
 fn hazards_are_those_of_parts() {
     // The second pass samples another layer than the first one draws.
-    let caps = [Caps::wgpu(), Caps::tiler(), Caps::desktop()];
+    let caps = [wgpu(), Caps::tiler(), Caps::desktop()];
     let layers = |read: u16, drawn: u16| {
         let mut g = Graph::new();
         let t = g.import_texture("t", hdr().layers(3), Entry::Defined, Exit::Keep);
@@ -221,7 +221,7 @@ fn compute_between_splits_and_says_so() {
     let a = overlay(&mut g, "second", a);
     g.export(a).unwrap();
     g.export(t).unwrap();
-    let p = plan(&g, &Caps::wgpu());
+    let p = plan(&g, &wgpu());
     assert_eq!(split_reason(&p, "second"), Some(Refusal::ComputeBetween));
 }
 
@@ -243,7 +243,7 @@ fn another_depth_attachment_splits() {
         })
         .unwrap();
     g.export(a).unwrap();
-    let p = plan(&g, &Caps::wgpu());
+    let p = plan(&g, &wgpu());
     assert_eq!(steps(&p), [vec!["first", "with_z"], vec!["with_y"]]);
     assert_eq!(split_reason(&p, "with_y"), Some(Refusal::DepthDiffers));
 }
@@ -261,7 +261,7 @@ fn a_resolved_attachment_cannot_change_afterwards() {
     let ms = overlay(&mut g, "second", ms);
     g.export(ms).unwrap();
     g.export(into).unwrap();
-    let p = plan(&g, &Caps::wgpu());
+    let p = plan(&g, &wgpu());
     assert_eq!(split_reason(&p, "second"), Some(Refusal::ResolveBetween));
 }
 
@@ -305,7 +305,7 @@ fn a_tiler_keeps_a_deferred_frame_in_the_tile() {
 
 #[test]
 fn a_device_without_same_pixel_reads_splits_the_deferred_frame() {
-    let p = plan(&deferred(), &Caps::wgpu());
+    let p = plan(&deferred(), &wgpu());
     assert_eq!(p.counts().steps, 3);
     assert_eq!(split_reason(&p, "lighting"), Some(Refusal::SamePixelUnsupported));
     assert_eq!(p.counts().resolves, 4 + 1 + 1);

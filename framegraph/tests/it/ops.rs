@@ -49,7 +49,7 @@ fn orders() -> [Options; 2] {
 fn blending_in_vain_keeps_nobody_alive_and_loads_nothing() {
     for options in orders() {
         let graphs = [blending(After::Nothing, 1), blending(After::AveragedInVain, 4)];
-        for (graph, caps) in graphs.iter().flat_map(|g| [(g, Caps::wgpu()), (g, Caps::tiler())]) {
+        for (graph, caps) in graphs.iter().flat_map(|g| [(g, wgpu()), (g, Caps::tiler())]) {
             let plan = plan_with(graph, &caps, &options);
             let (flow, velocity, particles) = {
                 let g = plan.graph();
@@ -75,7 +75,7 @@ fn what_is_blended_for_somebody_is_loaded() {
         // Devices that merge the two passes are excluded, because they load nothing.
         let apart = Options { merge: false, ..options };
         for (after, samples) in [(After::Exported, 1), (After::Averaged, 4)] {
-            let plan = plan_with(&blending(after, samples), &Caps::wgpu(), &apart);
+            let plan = plan_with(&blending(after, samples), &wgpu(), &apart);
             let (load, _) = ops(&plan, "flow")[1];
             assert_eq!((plan.counts().culled, load), (0, LoadOp::Load), "{}", dump::text(&plan));
             assert!(check::examine(&plan).is_clean());
@@ -94,7 +94,7 @@ fn depth_that_is_tested_in_vain_is_loaded() {
         p.depth(z, Intent::Modify).map(drop)
     })
     .unwrap();
-    let plan = plan_with(&g, &Caps::wgpu(), &Options { merge: false, ..options() });
+    let plan = plan_with(&g, &wgpu(), &Options { merge: false, ..options() });
     assert_eq!(ops(&plan, "z"), [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, StoreOp::Discard)]);
 }
 
@@ -119,7 +119,7 @@ fn what_is_read_beside_the_depth_test_is_left_in_memory() {
     for options in orders() {
         let apart = Options { merge: false, ..options };
         for (sampled, store, discards) in [(true, StoreOp::None, 0), (false, StoreOp::Discard, 1)] {
-            let plan = plan_with(&soft_particles(sampled), &Caps::wgpu(), &apart);
+            let plan = plan_with(&soft_particles(sampled), &wgpu(), &apart);
             assert_eq!(ops(&plan, "z"), [(LoadOp::Clear, StoreOp::Store), (LoadOp::Load, store)]);
             assert_eq!(plan.counts().discards, discards);
             let z = plan.graph().find_resource("z").unwrap();

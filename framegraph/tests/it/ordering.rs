@@ -22,7 +22,7 @@ fn interleaved() -> Graph {
 
 #[test]
 fn mergeable_passes_come_together() {
-    let (g, caps) = (interleaved(), Caps::wgpu());
+    let (g, caps) = (interleaved(), wgpu());
     assert_eq!(plan(&g, &caps).counts().steps, 4);
     let p = plan_with(&g, &caps, &Options { order: OPTIMIZED, ..options() });
     assert_eq!(steps(&p), [["a0", "a1"], ["b0", "b1"]]);
@@ -65,8 +65,8 @@ fn fewer_bytes_are_live() {
         .unwrap();
     g.export(out).unwrap();
     let big_bytes = u64::from(FRAME[0] * FRAME[1]) * 8;
-    assert_eq!(plan(&g, &Caps::wgpu()).memory().lower_bound_bytes, 4 * big_bytes + 4);
-    let p = plan_with(&g, &Caps::wgpu(), &Options { order: OPTIMIZED, ..options() });
+    assert_eq!(plan(&g, &wgpu()).memory().lower_bound_bytes, 4 * big_bytes + 4);
+    let p = plan_with(&g, &wgpu(), &Options { order: OPTIMIZED, ..options() });
     assert_eq!(p.memory().bytes, big_bytes + 4 * 4);
 }
 

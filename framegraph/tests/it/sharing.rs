@@ -16,7 +16,7 @@ fn names(graph: &Graph) -> Vec<&str> {
 
 fn compiled(g: &Graph) -> Plan {
     let mut plan = Plan::new();
-    compile(g, &Caps::wgpu(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan).unwrap();
+    compile(g, &wgpu(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan).unwrap();
     plan
 }
 
@@ -55,7 +55,7 @@ fn two_sets_of_arrays_take_turns() {
     for _ in 0..6 {
         g.reset();
         one_pass(&mut g, "a");
-        compile(&g, &Caps::wgpu(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan).unwrap();
+        compile(&g, &wgpu(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan).unwrap();
         seen.push(g.passes().as_ptr());
     }
     assert_ne!(seen[0], seen[1]);
@@ -68,7 +68,7 @@ fn an_unchanged_graph_hands_its_handles_to_the_plan() {
     let mut g = Graph::new();
     let mut plan = Plan::new();
     let old = one_pass(&mut g, "a");
-    let (caps, options, mut scratch) = (Caps::wgpu(), Options::for_frame(64, 64), Scratch::new());
+    let (caps, options, mut scratch) = (wgpu(), Options::for_frame(64, 64), Scratch::new());
     assert_eq!(recompile(&g, &caps, &options, &mut scratch, &mut plan), Ok(true));
     g.reset();
     let new = one_pass(&mut g, "a");

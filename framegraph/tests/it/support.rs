@@ -19,6 +19,17 @@ pub fn depth() -> TextureDesc {
 pub const BLACK: Intent = Intent::Clear(ClearValue::BLACK);
 pub const FAR: Intent = Intent::Clear(ClearValue::FAR_REVERSED);
 
+/// wgpu with every format, raster passes without attachments, and small alignments, so that graphs can stay small.
+pub fn wgpu() -> Caps {
+    Caps {
+        name: "wgpu".into(),
+        empty_raster: true,
+        uniform_alignment_bytes: 4,
+        storage_alignment_bytes: 4,
+        ..Caps::wgpu_native()
+    }
+}
+
 pub fn options() -> Options {
     Options { frame: FRAME, ..Options::default() }
 }
@@ -36,7 +47,7 @@ pub fn plan_with(graph: &Graph, caps: &Caps, options: &Options) -> Plan {
 }
 
 pub fn errors(graph: &Graph) -> Vec<CompileError> {
-    let outcome = compile(graph, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut Plan::new());
+    let outcome = compile(graph, &wgpu(), &options(), &mut Scratch::new(), &mut Plan::new());
     outcome.expect_err("the graph compiles").listed
 }
 

@@ -17,7 +17,7 @@ fn frame(first: Option<Format>, second: Option<Format>) -> Graph {
 fn attachments_share_a_step_when_they_are_seen_alike() {
     let linear = Some(Format::Rgba8Unorm);
     for (first, second, steps) in [(None, None, 1), (linear, linear, 1), (None, linear, 2), (linear, None, 2)] {
-        for caps in [Caps::wgpu(), Caps::tiler(), Caps::desktop()] {
+        for caps in [wgpu(), Caps::tiler(), Caps::desktop()] {
             let g = frame(first, second);
             let plan = plan(&g, &caps);
             assert_eq!(check(&plan), Ok(()), "{first:?} {second:?}");
@@ -27,7 +27,7 @@ fn attachments_share_a_step_when_they_are_seen_alike() {
             assert_eq!(plan.resources()[0].srgb_views, first.or(second).is_some());
         }
     }
-    let text = dump::text(&plan(&frame(None, linear), &Caps::wgpu()));
+    let text = dump::text(&plan(&frame(None, linear), &wgpu()));
     assert!(text.contains("color 0: screen as Rgba8Unorm load -> store"), "{text}");
 }
 
@@ -56,7 +56,7 @@ fn samples_are_resolved_between_equal_views() {
         .unwrap();
         g
     };
-    assert_eq!(check(&plan(&resolved(Format::Rgba8UnormSrgb), &Caps::wgpu())), Ok(()));
+    assert_eq!(check(&plan(&resolved(Format::Rgba8UnormSrgb), &wgpu())), Ok(()));
     let reason = &errors(&resolved(Format::Rgba8Unorm))[0].reason;
     assert_eq!(*reason, CompileReason::Format { expected: Format::Rgba8UnormSrgb, found: Format::Rgba8Unorm });
 }
@@ -71,7 +71,7 @@ fn a_slot_has_both_formats_when_a_tenant_is_seen_through_the_other() {
         p.sampled(a.viewed_as(Format::Rgba8UnormSrgb))
     })
     .unwrap();
-    let plan = plan(&g, &Caps::wgpu());
+    let plan = plan(&g, &wgpu());
     assert_eq!(check(&plan), Ok(()));
     assert!(plan.slots()[0].srgb_views);
 }

@@ -209,7 +209,7 @@ fn clear(
     let part = part.used_as(TextureUsages::RENDER_ATTACHMENT);
     // A view that cannot be created is skipped; the pass that uses it reports the error.
     let Ok(view) = frame.caches.views.get(&frame.gpu.device, texture, part, "poisoned") else { return };
-    let depth_slice = (shape.dimension == Dimension::D3).then_some(0);
+    let depth_slice = (shape.dimension == Dimension::D3).then_some(range.layer.into());
     let values = Values { color: color(format), depth: DEPTH, stencil: STENCIL };
     fill_view("poison", (&view, depth_slice), (format, range.aspect), values, encoder);
 }

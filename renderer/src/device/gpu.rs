@@ -3,7 +3,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 use crate::device::adapter::{AdapterRequest, adapters, rank};
 use crate::device::adapter::{describe, is_software};
-use crate::device::caps::caps_of;
+use crate::device::caps::query;
 use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes, Watch};
 use crate::device::format::texture_format;
 use crate::device::open_error::OpenError;
@@ -202,20 +202,10 @@ impl Gpu {
         is_software(&self.info)
     }
 
-    /// Returns the capabilities of the device for the compiler.
+    /// Returns the capabilities of the device for the compiler. The first call queries the driver, and draws two texels
+    /// if it offers multiview ([`Gpu::max_attached_layers`]).
     pub fn caps(&self) -> Caps {
-        self.caps.get_or_init(|| self.query_caps()).clone()
-    }
-
-    fn query_caps(&self) -> Caps {
-        let averaged = |format: &Format| {
-            let flags = self.format_features(*format).flags;
-            // Formats without multisampling need no resolve.
-            !flags.contains(TextureFormatFeatureFlags::MULTISAMPLE_X4)
-                || flags.contains(TextureFormatFeatureFlags::MULTISAMPLE_RESOLVE)
-        };
-        let not_averaged = Format::ALL.into_iter().filter(|f| f.is_resolvable() && !averaged(f)).collect();
-        Caps { not_averaged, ..caps_of(&self.info, &self.device.limits()) }
+        self.caps.get_or_init(|| query(self)).clone()
     }
 
     /// Returns what the device can do with a format. The driver is queried once per format. Empty if the format needs a

@@ -93,7 +93,7 @@ fn view_of(frame: &Prepared<'_>, attachment: &Attachment) -> Result<(TextureView
     } else {
         view.used_as(TextureUsages::RENDER_ATTACHMENT | memoryless)
     };
-    let slice = (shape.dimension == Dimension::D3).then_some(0);
+    let slice = (shape.dimension == Dimension::D3).then_some(layer.into());
     let name = plan.graph().resource_name(attachment.resource);
     Ok((caches.views.get(&gpu.device, texture, view, name)?, slice))
 }

@@ -65,14 +65,15 @@ fn is_zero(value: ClearValue) -> bool {
     }
 }
 
-/// Fills the range of `access`. Zero values use wgpu's clear, others one render pass per level and layer. Returns false
+/// Fills the range of `access`. Zero values use wgpu's clear, others one render pass per level and layer or slice. Returns false
 /// if neither is possible.
 fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encoder: &mut CommandEncoder) -> bool {
     let Prepared { plan, realized, .. } = *frame;
     let Physical::Texture { texture, shape, .. } = realized.get(access.resource) else {
         return false;
     };
-    let layers = access.range.layer_range(if shape.dimension == Dimension::D3 { 1 } else { shape.size[2] });
+    let volume = shape.dimension == Dimension::D3;
+    let layers = access.range.layer_range(if volume { 1 } else { shape.size[2] });
     let mips = access.range.mip_range(shape.mips);
     let format = access.range.view.or(plan.format(access.resource)).unwrap_or(shape.format);
     // wgpu's clear always clears both planes.
@@ -89,17 +90,18 @@ fn fill_texture(frame: &Prepared<'_>, access: &Access, value: ClearValue, encode
         encoder.clear_texture(texture, &range);
         return true;
     }
-    let attachable = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
-    if !attachable {
+    if !shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) {
         return false;
     }
-    for (mip, layer) in mips.flat_map(|mip| layers.clone().map(move |layer| (mip, layer))) {
+    // A level of a volume has as many slices as its depth.
+    let slices = |mip: u32| if volume { 0..(shape.size[2] >> mip).max(1) } else { layers.clone() };
+    for (mip, layer) in mips.flat_map(|mip| slices(mip).map(move |layer| (mip, layer))) {
         let range = Range { mip: mip as u8, mips: 1, layer: layer as u16, layers: 1, ..Range::ALL };
         let part = ViewDesc::new(format, shape.dimension, range, (shape.mips, shape.size[2]), true);
         let name = plan.graph().resource_name(access.resource);
         let part = part.used_as(TextureUsages::RENDER_ATTACHMENT);
         let Ok(view) = frame.caches.views.get(&frame.gpu.device, texture, part, name) else { return false };
-        fill_view("clear", (&view, None), (format, access.range.aspect), value.into(), encoder);
+        fill_view("clear", (&view, volume.then_some(layer)), (format, access.range.aspect), value.into(), encoder);
     }
     true
 }

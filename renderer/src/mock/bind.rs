@@ -34,6 +34,7 @@ pub(super) struct TextureBinding {
     pub(super) aspect: Aspect,
     pub(super) dimension: Dimension,
     pub(super) layers: u32,
+    pub(super) levels: u32,
     pub(super) samples: u8,
 }
 
@@ -149,12 +150,13 @@ impl Bindings {
 /// Returns the kind of a texture binding and the index of its limit. `None` if the device cannot bind the texture this
 /// way.
 fn textured(cx: &Cx<'_>, access: &Access, desc: &TextureDesc, format: Format) -> Option<(BindingKind, usize)> {
+    let levels = access.range.mip_range(desc.mip_count(cx.plan().frame())).len() as u32;
     let layers = match desc.dimension {
         Dimension::D2 => access.range.layer_range(desc.layers.into()).len() as u32,
         Dimension::D3 => u32::from(desc.layers),
     };
     let aspect = access.range.aspect;
-    let shape = TextureBinding { format, aspect, dimension: desc.dimension, layers, samples: desc.samples };
+    let shape = TextureBinding { format, aspect, dimension: desc.dimension, layers, levels, samples: desc.samples };
     // WebGPU has no multisampled array textures.
     if desc.samples > 1 && layers > 1 {
         return None;

@@ -93,6 +93,11 @@ fn fetch(text: &mut String, number: usize, shape: &TextureBinding) {
         let load = |sample: u8| format!("{floats}(textureLoad({source}, texel, {sample}))");
         let all: Vec<String> = (0..shape.samples).map(load).collect();
         format!("let size = textureDimensions({source}); let texel = {texel};\n  return {};", all.join(" + "))
+    } else if shape.levels == 1 && shape.layers == 1 {
+        // Loops that run once take Mesa's compiler minutes if a shader has many of them.
+        format!(
+            "let size = textureDimensions({source}, 0); let texel = {texel};\n  return {floats}(textureLoad({source}, texel, 0));"
+        )
     } else {
         let (layers, layer) = if shape.layers > 1 { (shape.layers, "layer, ") } else { (1, "") };
         format!(

@@ -104,7 +104,7 @@ impl Requests {
     /// Fails if the plan places history images in a heap.
     pub(crate) fn collect(&mut self, plan: &Plan, gpu: &Gpu, poison: bool) -> Result<(), ExecuteError> {
         self.clear();
-        extra_usage(plan, &mut self.extra);
+        extra_usage(plan, gpu, &mut self.extra);
         if poison {
             poison_usage(plan, gpu, &mut self.extra);
         }
@@ -255,7 +255,7 @@ impl Requests {
 /// rendering.
 fn needs_wgpu_clear(plan: &Plan, resource: ResourceId, shape: &Shape) -> bool {
     let Shape::Texture(shape) = shape else { return false };
-    let drawn = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT) && shape.dimension == Dimension::D2;
+    let drawn = shape.usage.contains(TextureUsages::RENDER_ATTACHMENT);
     let passes = plan.running().flat_map(|m| plan.graph().accesses_of(m.pass));
     let mut cleared = passes.filter(|a| a.resource == resource && a.mode == Mode::Clear && !a.kind.is_attachment());
     plan.resources()[resource.index()].usage.contains(Usage::COPY_TARGET) || !drawn && cleared.next().is_some()
@@ -276,7 +276,7 @@ pub(crate) fn shaped(plan: &Plan, resource: ResourceId) -> Desc {
 }
 
 /// Adds usages that execution needs and no access declares: clears outside of render passes, and readback.
-fn extra_usage(plan: &Plan, extra: &mut Vec<Usage>) {
+fn extra_usage(plan: &Plan, gpu: &Gpu, extra: &mut Vec<Usage>) {
     let graph = plan.graph();
     extra.clear();
     extra.resize(graph.resources().len(), Usage::NONE);
@@ -287,7 +287,8 @@ fn extra_usage(plan: &Plan, extra: &mut Vec<Usage>) {
     for access in recorded.flat_map(|m| graph.accesses_of(m.pass)) {
         let stored = matches!(access.kind, AccessKind::StorageWrite | AccessKind::CopyTarget);
         let texture = graph.resources()[access.resource.index()].desc.texture();
-        let drawable = |format: Format| format.is_color_renderable() || format.is_depth_stencil();
+        let drawable =
+            |format: Format| gpu.format_features(format).allowed_usages.contains(TextureUsages::RENDER_ATTACHMENT);
         if stored && access.mode == Mode::Clear && texture.is_some_and(|t| drawable(t.format)) {
             add(access.resource, Usage::ATTACHMENT);
         }

@@ -16,7 +16,10 @@ fn every_target_of_random_graphs_can_be_inspected() -> TestResult {
         let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
         let options = Options { frame: generate::FRAME, ..generate::options_of(seed as u32) };
         let mut plan = Plan::new();
-        compile(&graph, &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        if compile(&graph, &gpu.caps(), &options, &mut Scratch::new(), &mut plan).is_err() {
+            beyond += 1;
+            continue;
+        }
         let mut frame = Frame::<()>::from_graph(graph);
         mock::add_recorders(&mut frame);
         let Ok(imported) = mock::imports(&gpu, &plan) else {

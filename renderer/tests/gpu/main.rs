@@ -20,6 +20,7 @@ mod msaa;
 mod parts;
 mod placed;
 mod poison;
+mod promise;
 mod random;
 mod raster;
 mod refusals;

@@ -128,7 +128,7 @@ fn samples_of_32_bits_are_averaged_by_a_pass() -> TestResult {
             return Ok(());
         }
         // Compares with a device that averages them in the store operation, if available.
-        let in_store = !gpu.caps().not_averaged.contains(&Format::R32Float);
+        let in_store = gpu.caps().averages(Format::R32Float);
         let declare = |frame: &mut Frame| {
             let desc = TextureDesc::new(Extent::FRAME, Format::R32Float);
             let samples = frame.graph_mut().texture("samples", desc.samples(4));
@@ -147,7 +147,8 @@ fn samples_of_32_bits_are_averaged_by_a_pass() -> TestResult {
         let resolved = bench.run(declare)?;
         assert_eq!(bench.plan.counts().multisample_resolves, u32::from(in_store));
         assert_eq!(bench.plan.counts().steps, 1 + u32::from(!in_store));
-        let caps = framegraph::Caps { not_averaged: vec![Format::R32Float], ..gpu.caps() };
+        let formats = gpu.caps().formats.without(Format::R32Float, framegraph::FormatCaps::RESOLVABLE);
+        let caps = framegraph::Caps { formats, ..gpu.caps() };
         let mut plan = Plan::new();
         compile(bench.frame.graph(), &caps, &bench.options, &mut Scratch::new(), &mut plan)?;
         let mut executor = Executor::new(gpu);

@@ -191,6 +191,7 @@ fn could_be_memoryless(ctx: &RuleInput<'_>, resource: ResourceId, expected: &Pla
         && !expected.first.is_none()
         && expected.first == expected.last
         && expected.usage.without(inside).is_empty()
+        && (!expected.srgb_views || ctx.plan.caps().memoryless_views)
         && ctx.plan.attachments_of(expected.first).iter().filter(|a| a.resource == resource).all(|a| {
             let planes = dropped(a.load, a.store) && dropped(a.stencil_load, a.stencil_store);
             planes && !is_target(a.role)

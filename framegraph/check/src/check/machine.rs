@@ -22,7 +22,7 @@ impl Machine<'_, '_> {
         let ctx = self.ctx;
         for planned in ctx.planned_accesses(member) {
             let elsewhere = planned.access.kind.is_attachment() || planned.in_shader;
-            if elsewhere || !planned.access.mode.needs_contents() || !chosen(&planned) {
+            if elsewhere || !planned.access.needs_contents() || !chosen(&planned) {
                 continue;
             }
             // A replaced resource has no memory, so it is looked up under its own name.
@@ -52,7 +52,7 @@ impl Machine<'_, '_> {
                 ctx.report.violation(Rule::NoMemory, place, "it is written, but has no memory");
                 continue;
             }
-            if !access.mode.needs_contents() {
+            if !access.needs_contents() {
                 for part in ctx.covered(&access) {
                     self.memory.overwritten(self.memory.source(part));
                 }

@@ -137,7 +137,7 @@ impl Reference {
             let ids = graph.passes()[pass.index()].accesses.range();
             for (id, access) in ids.zip(graph.accesses_of(pass)) {
                 let start = reads.len();
-                if access.mode.needs_contents() {
+                if access.needs_contents() {
                     reads.extend(parts.covered(access.resource, access.range).map(|part| Read {
                         pass,
                         access: id,
@@ -170,7 +170,7 @@ impl Reference {
         for pass in running {
             let ids = graph.passes()[pass.index()].accesses.range();
             for (id, access) in ids.zip(graph.accesses_of(*pass)) {
-                self.in_vain[id] = access.mode.needs_contents() && !demand.accesses[id];
+                self.in_vain[id] = access.needs_contents() && !demand.accesses[id];
             }
         }
     }

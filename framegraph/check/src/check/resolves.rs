@@ -180,6 +180,6 @@ pub(super) fn in_store(ctx: &RuleInput<'_>, resolve: &Access) -> bool {
     let caps = ctx.plan.caps();
     let modes = if resolve.slot == Access::DEPTH { caps.depth_resolves } else { caps.color_resolves };
     let apart = resolve.resolve == ResolveMode::Average
-        && ctx.texture(resolve.resource).is_some_and(|t| caps.not_averaged.contains(&t.format));
+        && ctx.texture(resolve.resource).is_some_and(|t| !caps.averages(t.format));
     modes.has(resolve.resolve) && !apart
 }

@@ -81,7 +81,9 @@ impl Subresources {
         let mips = range.mip_range(row.mips);
         let named = self.bytes.get(range.bytes.index()).cloned();
         let layers = named.unwrap_or_else(|| range.layer_range(row.layers));
-        let (mips, layers) = (mips.start..mips.end.min(row.mips), layers.start..layers.end.min(row.layers));
+        // A slice of a three-dimensional texture is a part of its only layer.
+        let layers = if range.slice { 0..1 } else { layers.start..layers.end.min(row.layers) };
+        let mips = mips.start..mips.end.min(row.mips);
         mips.flat_map(move |mip| {
             layers.clone().flat_map(move |layer| {
                 let first = row.first + ((mip * row.layers + layer) * row.planes) as usize;

@@ -131,7 +131,7 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
     for (at, part) in ctx.parts.covered(planned.resource, planned.range).enumerate() {
         let read = ctx.reads(planned.id).get(at);
         let Some(cell) = tile.cell(part) else {
-            if let Some(read) = read.filter(|_| access.mode.needs_contents()) {
+            if let Some(read) = read.filter(|_| access.needs_contents()) {
                 let nothing = Value::Garbage(Cause::NotAttached);
                 machine.compare(nothing, read.value, place.into(), planned, read.part);
             }
@@ -177,7 +177,7 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
             }
             Mode::Overwrite => {}
         }
-        if cell.initial && (!access.mode.needs_contents() || in_vain) {
+        if cell.initial && (!access.needs_contents() || in_vain) {
             machine.memory.overwritten(cell.source);
         }
     }

@@ -4,7 +4,7 @@ use super::profile::FRAME;
 use super::world::{PIECE_BYTES, World};
 use framegraph::access::{AccessKind, ClearValue, Intent, Mode, Range};
 use framegraph::error::DeclareError;
-use framegraph::format::Format;
+use framegraph::format::{Aspect, Format};
 use framegraph::graph::PassKind;
 use framegraph::handle::{Buffer, Part, Texture};
 use framegraph::pass_builder::{MAX_COLORS, PassBuilder};
@@ -53,7 +53,11 @@ impl Draft {
         self.accesses.iter().all(|a| {
             let both_read = a.intent.is_none() && !writes;
             let apart = match (a.what, what) {
-                (What::Texture(i, r), What::Texture(j, s)) => i != j || !r.overlaps(&s, world.textures[i].desc.format),
+                (What::Texture(i, r), What::Texture(j, s)) => {
+                    // Few devices write one plane while shaders read the other.
+                    let all = |range: Range| Range { aspect: Aspect::All, ..range };
+                    i != j || !all(r).overlaps(&all(s), world.textures[i].desc.format)
+                }
                 // Other bytes may be written in the same way; this case is generated elsewhere.
                 (What::Buffer(i, _), What::Buffer(j, _)) => i != j,
                 (a, b) => a != b,

@@ -280,6 +280,7 @@ impl<'w, 'e> World<'w, 'e> {
                 range.mips = u8::MAX; // the same range in another form
             }
         }
+        let layers = if desc.dimension == Dimension::D3 { 0 } else { layers };
         match self.entropy.below(3) {
             1 if layers > 0 => {
                 range.layer = self.entropy.below(layers) as u16;

@@ -47,7 +47,7 @@ fn no_mutant_of_a_random_plan_lives() {
     let profile = Profile { max_passes: 5, ..Profile::default() };
     for seed in seeds(9) {
         let graph = generate::graph(&mut Entropy::seeded(seed), &profile);
-        let caps = [Caps::wgpu(), Caps::tiler(), Caps::desktop()][seed as usize % 3].clone();
+        let caps = generate::capable([Caps::wgpu(), Caps::tiler(), Caps::desktop()][seed as usize % 3].clone());
         let number = if seed % 2 == 0 { 0 } else { seed as u32 * 7 };
         let plan = compiled(&graph, &caps, &generate::options_of(number));
         count += kill_all(&plan, &format!("seed {seed}, options {number}"));

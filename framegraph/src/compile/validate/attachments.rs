@@ -1,11 +1,12 @@
 //! Validation of the attachments of a pass.
 
+use crate::MAX_COLORS;
 use crate::access::{Access, AccessKind, Range};
 use crate::caps::Caps;
 use crate::compile::error::{CompileError, CompileErrors, CompileReason};
 use crate::compile::framebuffer::{Framebuffer, framebuffer_of};
 use crate::compile::measure::Measured;
-use crate::format::Aspect;
+use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::{PassId, ResourceId};
 use crate::resource::TextureDesc;
@@ -20,7 +21,10 @@ pub(super) fn attachments(
     errors: &mut CompileErrors,
 ) {
     let accesses = graph.accesses_of(pass);
-    let (mut colors, mut bytes) = (0, 0);
+    let mut colors = [None; MAX_COLORS as usize];
+    if framebuffer.layers() == 0 && !caps.empty_raster {
+        return errors.push(|| CompileError::new(graph, CompileReason::NoAttachment, pass, ResourceId::NONE));
+    }
     for access in accesses.iter().filter(|a| a.kind.is_attachment()) {
         let resource = access.resource;
         let Some(texture) = graph.resources[resource.index()].desc.texture() else {
@@ -37,22 +41,30 @@ pub(super) fn attachments(
             let reason = CompileReason::Samples { expected, found: own.samples() };
             errors.push(|| CompileError::new(graph, reason, pass, resource));
         }
-        if access.kind.is_depth() && !caps.sample_read_only_depth {
-            sampled_depth(graph, pass, access, errors);
+        if access.kind.is_depth() && !(caps.sample_read_only_depth && caps.separate_planes) {
+            sampled_depth(graph, caps, pass, access, errors);
         }
         if access.kind == AccessKind::Color {
-            colors += 1;
-            bytes += texture.format.tile_bytes();
+            colors[usize::from(access.slot)] = Some(texture.format);
         }
         if access.kind == AccessKind::Resolve {
             resolve(graph, accesses, pass, access, texture, errors);
         }
     }
     same_pixel(graph, measures, pass, framebuffer, errors);
-    if colors > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
+    let formats = colors.iter().flatten().copied();
+    // Slots that no attachment uses count too: WebGPU limits the highest slot.
+    let slots = colors.iter().rposition(Option::is_some).map_or(0, |last| last as u32 + 1);
+    let bytes = Format::tile_sum(formats);
+    if slots > u32::from(caps.max_color_attachments) || bytes > caps.max_color_bytes_per_sample {
         let (max_colors, max_bytes) = (caps.max_color_attachments, caps.max_color_bytes_per_sample);
-        let reason = CompileReason::Attachments { colors, bytes, max_colors, max_bytes };
+        let reason = CompileReason::Attachments { colors: slots, bytes, max_colors, max_bytes };
         errors.push(|| CompileError::new(graph, reason, pass, ResourceId::NONE));
+    }
+    if framebuffer.layers() > caps.max_attached_layers {
+        let reason = CompileReason::AttachedLayers { layers: framebuffer.layers(), max: caps.max_attached_layers };
+        let first = accesses.iter().find(|a| a.kind.is_attachment()).map_or(ResourceId::NONE, |a| a.resource);
+        errors.push(|| CompileError::new(graph, reason, pass, first));
     }
 }
 
@@ -81,8 +93,13 @@ fn resolve(
     }
 }
 
-/// Reports a depth attachment that the pass also samples, for devices that do not support it.
-fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut CompileErrors) {
+/// Reports a depth attachment that the pass also samples, for devices that do not support it. Planes that the device
+/// cannot use separately count as one.
+fn sampled_depth(graph: &Tables, caps: &Caps, pass: PassId, depth: &Access, errors: &mut CompileErrors) {
+    let read_only = depth.kind == AccessKind::DepthReadOnly;
+    if read_only && caps.sample_read_only_depth {
+        return;
+    }
     let Some(texture) = graph.resources[depth.resource.index()].desc.texture() else {
         return;
     };
@@ -92,7 +109,10 @@ fn sampled_depth(graph: &Tables, pass: PassId, depth: &Access, errors: &mut Comp
         !a.kind.is_attachment() && a.resource == depth.resource && own.overlaps(&planes(a.range), texture.format)
     });
     if let Some(sampled) = sampled {
-        let reason = CompileReason::SampledDepth { access: sampled.kind };
+        let reason = match read_only {
+            true => CompileReason::SampledDepth { access: sampled.kind },
+            false => CompileReason::Planes { access: sampled.kind },
+        };
         errors.push(|| CompileError::new(graph, reason, pass, depth.resource));
     }
 }

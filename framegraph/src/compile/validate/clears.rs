@@ -1,13 +1,15 @@
 //! Validation of clear values.
 
-use crate::access::{ClearValue, Mode};
+use crate::access::{Access, ByteRange, ClearValue, Mode};
+use crate::caps::{Caps, FormatCaps};
 use crate::compile::error::{CompileError, CompileErrors, CompileReason};
-use crate::format::Format;
+use crate::format::{Aspect, Format};
 use crate::graph::Tables;
 use crate::id::PassId;
 
-/// Reports the clear values of a pass that the view format cannot represent.
-pub(super) fn clears(graph: &Tables, pass: PassId, errors: &mut CompileErrors) {
+/// Reports the clear values of a pass that the view format cannot represent, and clears outside of render passes that
+/// the device cannot do.
+pub(super) fn clears(graph: &Tables, caps: &Caps, pass: PassId, errors: &mut CompileErrors) {
     for access in graph.accesses_of(pass).iter().filter(|a| a.mode == Mode::Clear) {
         let texture = graph.resources[access.resource.index()].desc.texture();
         let format = texture.map(|t| access.range.view.unwrap_or(t.format));
@@ -15,7 +17,32 @@ pub(super) fn clears(graph: &Tables, pass: PassId, errors: &mut CompileErrors) {
         if !holds(format, value) {
             let reason = CompileReason::ClearValue { value, format };
             errors.push(|| CompileError::new(graph, reason, pass, access.resource));
+        } else if !access.kind.is_attachment() && !stores(graph, caps, access, format, value) {
+            let reason = CompileReason::ClearUnsupported { access: access.kind, format };
+            errors.push(|| CompileError::new(graph, reason, pass, access.resource));
         }
+    }
+}
+
+/// Returns `true` if the device can clear a storage or copy target to a value.
+fn stores(graph: &Tables, caps: &Caps, access: &Access, format: Option<Format>, value: ClearValue) -> bool {
+    let Some(format) = format else {
+        let aligned = |range: ByteRange| (range.offset | range.bytes).is_multiple_of(4);
+        return caps.clears_to_value || graph.bytes_of(access).is_none_or(aligned);
+    };
+    // One plane alone is cleared by drawing.
+    let whole = format.planes() == 1 || access.range.aspect == Aspect::All;
+    caps.clears_to_value
+        || caps.formats.get(format).contains(FormatCaps::RENDERABLE)
+        || caps.clears_to_zero && whole && is_zero(value)
+}
+
+/// Returns `true` if every component is zero, including alpha.
+fn is_zero(value: ClearValue) -> bool {
+    match value {
+        ClearValue::Zero => true,
+        ClearValue::Color(color) => color.iter().all(|c| c.to_bits() == 0),
+        ClearValue::DepthStencil(depth, stencil) => depth.to_bits() == 0 && stencil == 0,
     }
 }
 

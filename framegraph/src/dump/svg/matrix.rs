@@ -169,7 +169,7 @@ fn used(plan: &Plan, resource: ResourceId, step: StepId) -> (bool, bool) {
         for access in plan.graph().accesses_of(member.pass) {
             let inlined = member.join == Join::Inlined && access.kind == AccessKind::SamePixel;
             if access.resource == resource && !inlined {
-                read |= access.mode.needs_contents();
+                read |= access.needs_contents();
                 written |= access.mode.writes();
             }
         }

@@ -122,13 +122,14 @@ fn shuffled(most: usize, count: usize) -> impl Iterator<Item = (u64, Graph, Vec<
     let draw = move |seed: u64| {
         let mut entropy = Entropy::seeded(seed);
         let graph = generate::graph(&mut entropy, &profile);
-        let plan = compiled(&graph, &Caps::wgpu(), &declared());
+        let plan = compiled(&graph, &crate::support::wgpu(), &declared());
         let kept: Vec<_> = graph.pass_ids().filter(|p| !plan.is_culled(*p)).collect();
         let all = orders(&graph, &kept, 200).filter(|all| all.len() >= 3 && kept.len() <= most)?;
         let lot = entropy.below(all.len() as u32) as usize;
         let graph = redeclared(&graph, &all[lot]);
         // An import with readers that are all culled may be invalid afterwards.
-        let sound = compile(&graph, &Caps::wgpu(), &declared(), &mut Scratch::new(), &mut Plan::new()).is_ok();
+        let sound =
+            compile(&graph, &crate::support::wgpu(), &declared(), &mut Scratch::new(), &mut Plan::new()).is_ok();
         let passes: Vec<_> = graph.pass_ids().collect();
         let all = orders(&graph, &passes, 200).filter(|_| sound)?;
         Some((seed, graph, all))
@@ -140,7 +141,7 @@ fn shuffled(most: usize, count: usize) -> impl Iterator<Item = (u64, Graph, Vec<
 fn every_order_gives_a_right_plan_and_the_optimising_order_is_the_best() {
     let (mut graphs, mut tried, mut best, mut lucky) = (0, 0, 0, 0);
     for (seed, graph, orders) in shuffled(8, 120) {
-        let caps = &[Caps::wgpu(), Caps::tiler(), Caps::desktop()][seed as usize % 3];
+        let caps = &[crate::support::wgpu(), Caps::tiler(), Caps::desktop()][seed as usize % 3];
         let alias = if seed % 2 == 0 { Alias::Pool } else { Alias::Heap };
         let declared = Options { alias, ..declared() };
         let found = cost(&compiled(&graph, caps, &Options { order: Order::Optimized, ..declared }));

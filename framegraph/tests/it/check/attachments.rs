@@ -17,7 +17,7 @@ fn one_spot_spelled_in_two_ways_is_one_attachment() {
     let all = t.range(layers(0, 2));
     let t = g.add_fn("second", |p| p.color(all, Intent::Modify)).unwrap();
     g.export(t).unwrap();
-    let plan = clean(&g, &Caps::wgpu());
+    let plan = clean(&g, &wgpu());
     assert_eq!(steps(&plan), [["first", "second"]]);
 }
 
@@ -34,7 +34,7 @@ fn overlapping_layers_are_not_attached_at_once() {
         .unwrap();
     g.export(t).unwrap();
     g.export(z).unwrap();
-    let plan = clean(&g, &Caps::wgpu());
+    let plan = clean(&g, &wgpu());
     assert_eq!(split_reason(&plan, "second"), Some(Refusal::ColorsDiffer));
 }
 
@@ -60,7 +60,7 @@ fn one_target_is_not_resolved_into_twice_in_a_step() {
         p.sampled(frame.0).map(drop)
     })
     .unwrap();
-    for caps in [Caps::wgpu(), Caps::tiler()] {
+    for caps in [wgpu(), Caps::tiler()] {
         clean(&g, &caps);
     }
 }
@@ -75,7 +75,7 @@ fn a_plane_that_nobody_touches_costs_no_memory_and_is_no_reason() {
         p.color(out, BLACK)
     })
     .unwrap();
-    let plan = clean(&g, &Caps::wgpu());
+    let plan = clean(&g, &wgpu());
     assert_eq!(placement(&plan, "ds"), Placement::Memoryless);
     assert_eq!(plan.counts().discards, 1);
     let plan = clean(&g, &Caps::desktop());
@@ -102,7 +102,7 @@ fn a_load_names_the_writer_of_the_plane_that_is_loaded() {
     })
     .unwrap();
     g.export(ds).unwrap();
-    let plan = clean(&g, &Caps::wgpu());
+    let plan = clean(&g, &wgpu());
     let id = |name| g.find_pass(name).unwrap();
     let step = plan.pass_steps()[id("use").index()];
     let ds = g.find_resource("ds").unwrap();
@@ -121,8 +121,8 @@ fn a_device_that_cannot_sample_tested_depth_refuses_it() {
         p.color(out, Intent::Overwrite)
     })
     .unwrap();
-    clean(&g, &Caps::wgpu());
-    let caps = Caps { sample_read_only_depth: false, ..Caps::wgpu() };
+    clean(&g, &wgpu());
+    let caps = Caps { sample_read_only_depth: false, ..wgpu() };
     let outcome = compile(&g, &caps, &options(), &mut Scratch::new(), &mut Plan::new());
     let errors = outcome.expect_err("the device does not support it").listed;
     let access = AccessKind::Sampled;
@@ -144,7 +144,7 @@ fn planes_start_apart_with_one_clear_value_at_most() {
             p.color(out, Intent::Modify)
         })
         .unwrap();
-        clean(&g, &Caps::wgpu())
+        clean(&g, &wgpu())
     };
     let plan = starts(Intent::Modify);
     let a = plan.attachments()[1];

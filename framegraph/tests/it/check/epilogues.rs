@@ -95,7 +95,7 @@ fn unsound_epilogues_are_refused() {
         }),
     ];
     for (refusal, graph) in graphs {
-        let plan = clean(&graph, &Caps::wgpu());
+        let plan = clean(&graph, &wgpu());
         let grade = graph.find_pass("grade").unwrap();
         let found = plan.reasons(Subject::Pass(grade)).find_map(|r| match r {
             Reason::NotInlined(_, why) => Some(why),
@@ -104,7 +104,7 @@ fn unsound_epilogues_are_refused() {
         assert_eq!(found, Some(refusal), "{}", dump::text(&plan));
     }
     let both_sample = epilogue(|p, _| draw(p, hdr()), |p, _, _| draw(p, color(Format::Rgba8Unorm)));
-    assert_eq!(clean(&both_sample, &Caps::wgpu()).counts().inlined, 1);
+    assert_eq!(clean(&both_sample, &wgpu()).counts().inlined, 1);
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn depth_is_resolved_in_the_store_and_its_samples_take_no_memory() {
 fn without_a_resolve_in_the_store_the_plan_has_a_full_screen_pass() {
     let texels = u64::from(FRAME[0] * FRAME[1]);
     for (caps, mode) in [
-        (Caps::wgpu(), ResolveMode::Sample0),
+        (wgpu(), ResolveMode::Sample0),
         (Caps::tiler(), ResolveMode::Max),
         (Caps { depth_resolves: ResolveModes::NONE, ..Caps::desktop() }, ResolveMode::Min),
     ] {
@@ -90,12 +90,12 @@ fn colors_are_resolved_by_mode() {
         };
         let one = g.add_fn("draw", declare).unwrap();
         g.export(one).unwrap();
-        let plan = clean(&g, &Caps::wgpu());
+        let plan = clean(&g, &wgpu());
         assert_eq!(plan.counts().steps, 1 + u32::from(full_screen), "{mode:?}");
         let target = plan.attachments().last().unwrap().role;
         assert_eq!(target, if full_screen { Role::Color(2) } else { Role::ResolveTarget(2, mode) });
         let every = ResolveModes::of(&ResolveMode::ALL);
-        let plan = clean(&g, &Caps { color_resolves: every, ..Caps::wgpu() });
+        let plan = clean(&g, &Caps { color_resolves: every, ..wgpu() });
         assert_eq!((plan.counts().steps, placement(&plan, "samples")), (1, Placement::Memoryless));
     }
 }
@@ -104,7 +104,8 @@ fn colors_are_resolved_by_mode() {
 /// device.
 #[test]
 fn a_format_that_is_not_averaged_is_resolved_by_a_pass() {
-    let caps = Caps { not_averaged: vec![Format::R32Float], ..Caps::wgpu() };
+    let formats = wgpu().formats.without(Format::R32Float, FormatCaps::RESOLVABLE);
+    let caps = Caps { formats, ..wgpu() };
     for (format, shown, full_screen) in [
         (Format::R32Float, Format::R16Float, true),
         (Format::R16Float, Format::R16Float, false),
@@ -152,11 +153,11 @@ fn a_resolve_that_nobody_reads_is_dropped() {
     // Forwarded textures are logged even if resolves were dropped.
     let gone = g.add_fn("post", |p| p.color(gone, Intent::Overwrite)).unwrap();
     g.forward(gone, screen).unwrap();
-    let plan = clean(&g, &Caps::wgpu());
+    let plan = clean(&g, &wgpu());
     let one = g.find_resource("one").unwrap();
     assert!(plan.reasons(Subject::Pass(g.find_pass("draw").unwrap())).any(|r| r == Reason::ResolveDropped(one)));
     assert_eq!((plan.counts().steps, placement(&plan, "samples")), (2, Placement::Memoryless));
-    let kept = plan_with(&g, &Caps::wgpu(), &Options { cull: false, ..options() });
+    let kept = plan_with(&g, &wgpu(), &Options { cull: false, ..options() });
     assert!(check::examine(&kept).is_clean());
     assert_eq!(kept.counts().steps, 3);
 }
@@ -165,7 +166,7 @@ fn a_resolve_that_nobody_reads_is_dropped() {
 /// depth.
 #[test]
 fn what_only_resolves_shares_the_step_and_what_changes_the_samples_does_not() {
-    for caps in [Caps::tiler(), Caps::wgpu()] {
+    for caps in [Caps::tiler(), wgpu()] {
         for changes in [false, true] {
             let mut g = Graph::new();
             let (samples, one) = (g.texture("samples", depth().samples(4)), g.texture("one", depth()));
@@ -220,8 +221,8 @@ fn only_averages_are_graded_sample_by_sample() {
             p.color(out, Intent::Overwrite)
         })
         .unwrap();
-        let modes = if every { ResolveModes::of(&ResolveMode::ALL) } else { Caps::wgpu().color_resolves };
-        let plan = clean(&g, &Caps { color_resolves: modes, ..Caps::wgpu() });
+        let modes = if every { ResolveModes::of(&ResolveMode::ALL) } else { wgpu().color_resolves };
+        let plan = clean(&g, &Caps { color_resolves: modes, ..wgpu() });
         assert_eq!(plan.counts().inlined, u32::from(inlined), "{mode:?}");
         let grade = Subject::Pass(g.find_pass("grade").unwrap());
         let refused = plan.reasons(grade).any(|r| matches!(r, Reason::NotInlined(_, Refusal::ResolveMode)));

@@ -70,7 +70,7 @@ fn a_device_without_reads_in_the_tile_samples_what_it_can() {
             })
             .unwrap();
     }
-    assert_eq!(steps(&clean(&g, &Caps::wgpu())), [["test", "fog"]]);
+    assert_eq!(steps(&clean(&g, &wgpu())), [["test", "fog"]]);
 }
 
 #[test]

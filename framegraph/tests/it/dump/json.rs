@@ -109,7 +109,7 @@ fn every_plan_fits_the_schema() {
 #[test]
 fn what_does_not_fit_is_noticed() {
     let schema = schema();
-    let good = parsed(&plan(&frame(), &Caps::wgpu()));
+    let good = parsed(&plan(&frame(), &wgpu()));
     check(&schema, &schema, &good, "$").expect("the plan fits");
     let paths = [
         ("/version", json!(2)),
@@ -137,7 +137,7 @@ fn what_does_not_fit_is_noticed() {
 
 #[test]
 fn the_values_are_those_of_the_plan() {
-    let value = parsed(&plan(&frame(), &Caps::wgpu()));
+    let value = parsed(&plan(&frame(), &wgpu()));
     assert_eq!(
         (&value["schema"], &value["version"], &value["name"]),
         (&json!("framegraph-plan"), &json!(dump::JSON_VERSION), &json!("frame"))

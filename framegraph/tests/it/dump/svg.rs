@@ -13,7 +13,7 @@ fn texts(document: &Document<'_>) -> Vec<String> {
 
 #[test]
 fn every_picture_is_well_formed_and_stands_alone() {
-    for plan in random_plans(30).iter().chain([&plan(&hostile(), &Caps::wgpu())]) {
+    for plan in random_plans(30).iter().chain([&plan(&hostile(), &wgpu())]) {
         let svg = dump::svg(plan);
         let document = Document::parse(&svg).unwrap_or_else(|e| panic!("{e}\n{svg}"));
         for node in document.descendants().filter(Node::is_element) {
@@ -48,7 +48,7 @@ fn everything_is_inside_of_the_picture() {
 
 #[test]
 fn the_picture_names_steps_resources_and_what_was_culled() {
-    let svg = dump::svg(&plan(&frame(), &Caps::wgpu()));
+    let svg = dump::svg(&plan(&frame(), &wgpu()));
     let document = Document::parse(&svg).expect("well-formed");
     let texts = texts(&document);
     let has = |wanted: &str| texts.iter().any(|t| t == wanted);
@@ -67,7 +67,7 @@ fn a_plan_without_steps_is_a_picture_too() {
         let _ = filtered_nothing(&mut g);
         g
     }] {
-        let svg = dump::svg(&plan(&graph, &Caps::wgpu()));
+        let svg = dump::svg(&plan(&graph, &wgpu()));
         Document::parse(&svg).expect("well-formed");
         assert!(svg.contains("no resource uses shared memory"));
     }

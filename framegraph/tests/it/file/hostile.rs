@@ -7,7 +7,7 @@ use framegraph::*;
 /// Returns the errors of declaring and compiling a file.
 fn wrong(text: &str) -> FileErrors {
     let parsed = GraphFile::parse("t.ron", text).unwrap_or_else(|e| panic!("{e}"));
-    let (caps, options) = (Caps::wgpu(), Options::default());
+    let (caps, options) = (crate::support::wgpu(), Options::default());
     let (mut graph, mut plan, registry) = (Graph::new(), Plan::new(), Registry::new());
     let outcome = parsed.plan(&[], &registry, &mut graph, (&caps, &options), &mut Scratch::new(), &mut plan);
     assert!(plan.steps().is_empty() && plan.graph().passes().is_empty(), "the plan is not empty");
@@ -100,7 +100,7 @@ fn no_output_has_control_characters() {
     let name = r"a\u{1b}[31m\u{0}\u{9b}\u{7f}\nb";
     let text = format!(
         "(version: 1, resources: [Texture(name: \"{name}\", format: R8Unorm)], passes: [Raster(name: \"{name}\", \
-         accesses: [Color(to: \"{name}\", intent: Overwrite)]), Raster(name: \"idle\", accesses: [])], \
+         accesses: [Color(to: \"{name}\", intent: Overwrite)]), Compute(name: \"idle\", accesses: [])], \
          exports: [Keep(of: \"{name}\")])"
     );
     let parsed = GraphFile::parse("t.ron", &text).unwrap();
@@ -108,7 +108,7 @@ fn no_output_has_control_characters() {
     let mut plan = Plan::new();
     let device = caps("c.ron", &format!("(version: 1, name: \"{name}\")")).unwrap();
     compile(&graph, &device, &Options::default(), &mut Scratch::new(), &mut plan).unwrap();
-    let other = crate::support::plan(&Graph::new(), &Caps::wgpu());
+    let other = crate::support::plan(&Graph::new(), &crate::support::wgpu());
     let outputs = [
         dump::text(&plan),
         dump::json(&plan, "x\u{1b}"),

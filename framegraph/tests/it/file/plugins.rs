@@ -170,11 +170,11 @@ fn in_code() -> Graph {
 fn the_file_with_plugins_and_the_code_compile_to_equal_plans() {
     let from_file = load(&file(SCREEN, PASSES, "")).unwrap();
     // The code declares its resources inside of the scope; the text differs only in those names.
-    let (a, b) = (plan(&from_file, &Caps::wgpu()), plan(&in_code(), &Caps::wgpu()));
+    let (a, b) = (plan(&from_file, &wgpu()), plan(&in_code(), &wgpu()));
     let plain = dump::text(&b).replace("bloom/../", "").replace("trail/../", "");
     assert_eq!(dump::text(&a), plain);
     assert_eq!((a.steps(), a.decisions()), (b.steps(), b.decisions()));
-    assert_same_plan(&a, &plan(&load(&file(SCREEN, PASSES, "")).unwrap(), &Caps::wgpu()));
+    assert_same_plan(&a, &plan(&load(&file(SCREEN, PASSES, "")).unwrap(), &wgpu()));
 }
 
 #[test]

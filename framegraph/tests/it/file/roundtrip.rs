@@ -195,7 +195,7 @@ fn every_graph_reads_back_as_it_was() {
         assert_eq!(to_ron(&again, "random", FRAME), text, "seed {seed}");
         assert_eq!(again.accesses().len(), graph.accesses().len(), "seed {seed}");
         passes += graph.passes().len();
-        for caps in [Caps::wgpu(), Caps::tiler()] {
+        for caps in [wgpu(), Caps::tiler()] {
             let run = |g: &Graph| {
                 let mut plan = Plan::new();
                 compile(g, &caps, &options(), &mut Scratch::new(), &mut plan).map(|()| plan)
@@ -240,7 +240,7 @@ fn damaged_files_never_panic_and_every_error_has_its_place() {
         let outcome = GraphFile::parse("d.ron", &text).and_then(|f| {
             let graph = f.graph(&[])?;
             let mut plan = Plan::new();
-            compile(&graph, &Caps::wgpu(), &options(), &mut Scratch::new(), &mut plan).map_err(|e| f.explain(&e))
+            compile(&graph, &wgpu(), &options(), &mut Scratch::new(), &mut plan).map_err(|e| f.explain(&e))
         });
         outcomes[usize::from(outcome.is_err())] += 1;
         let Err(errors) = outcome else { continue };

@@ -92,7 +92,7 @@ impl Candidate<'_, '_> {
             Refusal::ResolveMode => self.members.iter().any(|m| {
                 let mut into = self.ctx.accesses_of(m.pass).filter(|(_, a)| a.resource == input.resource);
                 let target = self.ctx.texture(output.resource).map(|t| t.format);
-                let target = target.is_some_and(|f| self.ctx.plan.caps().not_averaged.contains(&f));
+                let target = target.is_some_and(|f| !self.ctx.plan.caps().averages(f));
                 into.any(|(id, a)| {
                     let other = a.resolve != ResolveMode::Average || self.ctx.is_full_screen(id) || target;
                     a.kind == AccessKind::Resolve && other

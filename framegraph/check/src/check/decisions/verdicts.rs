@@ -113,7 +113,7 @@ fn overwrites(ctx: &RuleInput<'_>, pass: PassId, part: usize, chosen: impl Fn(Pa
     let later = (pass.index() + 1..ctx.graph.passes().len()).map(PassId::at);
     later.filter(|p| chosen(*p)).any(|p| {
         ctx.accesses_of(p).any(|(id, a)| {
-            let adds = a.mode.needs_contents() && !ctx.reference.in_vain[id];
+            let adds = a.needs_contents() && !ctx.reference.in_vain[id];
             a.mode.writes() && !adds && ctx.covered(a).any(|q| q == part)
         })
     })
