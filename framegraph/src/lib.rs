@@ -104,6 +104,7 @@ pub mod plan;
 pub mod resolve;
 pub mod resource;
 pub mod sanitize;
+pub mod suggest;
 #[cfg(feature = "testing")]
 pub mod testing;
 mod warning;

@@ -29,6 +29,7 @@
 
 mod before;
 mod blended;
+mod fields;
 pub mod frame_settings;
 mod glass;
 mod lens;
@@ -38,6 +39,7 @@ pub mod plugins;
 #[cfg(feature = "files")]
 pub mod settings_file;
 mod shadows;
+pub mod tables;
 pub mod world;
 
 use crate::effects::bloom::BloomSettings;

@@ -13,6 +13,7 @@ use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::{ViewId, Views};
 use crate::program::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
+use crate::settings::place::Words;
 use crate::stages::{Handles, Slot, StageError};
 use framegraph::{ClearValue, DeclareError, Extent, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_shaders::{Module, library};
@@ -32,6 +33,10 @@ pub enum Resolution {
     Full,
     /// Half the width and height: a quarter of the texels.
     Half,
+}
+
+impl Words for Resolution {
+    const WORDS: &'static [(&'static str, Self)] = &[("full", Self::Full), ("half", Self::Half)];
 }
 
 impl Resolution {
