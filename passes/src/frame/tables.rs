@@ -54,8 +54,10 @@ pub struct Row {
     pub default: String,
     /// Texts of values that exclude each other, one for each variant; none for numbers and switches.
     pub alternatives: Vec<String>,
-    /// Range of a number.
+    /// Range of a number as stored.
     pub range: Option<[f64; 2]>,
+    /// Default frame with the effect and the field.
+    pub frame: FrameSettings,
     set: SetRow,
     check: CheckRow,
 }
@@ -88,7 +90,7 @@ impl Row {
             Some("px") => "px",
             Some("texels") => "texels",
             Some("ev") => "EV",
-            Some("rad") => "degrees",
+            Some("rad") => "rad",
             _ => "",
         }
     }
@@ -132,18 +134,20 @@ fn section<S: SettingsTable>(at: At<S>, put: fn(&mut FrameSettings, S)) -> Secti
         path: S::PATH,
         about: S::ABOUT,
         methods: S::METHODS.iter().map(|(name, _)| *name).collect(),
-        rows: S::FIELDS.iter().map(|field| row(field, at)).collect(),
+        rows: S::FIELDS.iter().map(|field| row(field, at, put)).collect(),
         choose,
     }
 }
 
-fn row<S: SettingsTable>(field: &'static Field<S>, at: At<S>) -> Row {
+fn row<S: SettingsTable>(field: &'static Field<S>, at: At<S>, put: fn(&mut FrameSettings, S)) -> Row {
     let path = match (S::PATH, field.path) {
         (_, "") => String::new(),
         ("", own) => own.to_owned(),
         (effect, own) => format!("{effect}.{own}"),
     };
     let of = with_field(field);
+    let mut frame = FrameSettings::DEFAULT;
+    put(&mut frame, of);
     Row {
         key: field.key,
         path,
@@ -151,7 +155,8 @@ fn row<S: SettingsTable>(field: &'static Field<S>, at: At<S>) -> Row {
         takes: field.takes(&of),
         default: field.shown(&of).unwrap_or_default(),
         alternatives: field.alternatives(&of),
-        range: field.range(),
+        range: field.range(&of),
+        frame,
         set: Box::new(move |frame, text| at(frame).map_or(Ok(()), |settings| field.set(settings, text))),
         check: Box::new(move |frame| at(&mut { *frame }).and_then(|settings| field.wrong(settings))),
     }

@@ -131,8 +131,10 @@ impl<S: Copy + PartialEq + 'static> Field<S> {
         (self.place)(&mut { *settings }).wrong(self.range)
     }
 
-    /// Returns the range of a number; `None` for other fields.
-    pub fn range(&self) -> Option<[f64; 2]> {
-        (self.range[0] < self.range[1]).then_some(self.range)
+    /// Returns the range of a number as stored; `None` for other fields.
+    pub fn range(&self, settings: &S) -> Option<[f64; 2]> {
+        let [low, high] = self.range;
+        let is_angle = matches!((self.place)(&mut { *settings }), Place::Degrees(_));
+        (low < high).then(|| if is_angle { self.range.map(f64::to_radians) } else { self.range })
     }
 }

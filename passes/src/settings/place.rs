@@ -77,8 +77,8 @@ impl<T: Words> Word for T {
 pub enum Place<'a> {
     /// A number.
     Number(&'a mut dyn Number),
-    /// A number, or this word for `None`.
-    Optional(&'a mut dyn Number, &'static str),
+    /// A number, or this word for `None`; and a usual number.
+    Optional(&'a mut dyn Number, &'static str, f32),
     /// An angle in radians, given in degrees.
     Degrees(&'a mut f32),
     /// Numbers separated by `:`. One number sets all three of a color.
@@ -102,7 +102,7 @@ impl Place<'_> {
         match self {
             Self::Number(number) if number.is_whole() => format!("a whole number from {low} to {high}"),
             Self::Number(_) | Self::Degrees(_) => format!("a number from {low} to {high}"),
-            Self::Optional(_, none) => format!("`{none}` or a number from {low} to {high}"),
+            Self::Optional(_, none, _) => format!("`{none}` or a number from {low} to {high}"),
             Self::Numbers(all) => format!("{} numbers from {low} to {high}, separated by `:`", all.len()),
             Self::Count(_, all) => listed(all.iter().map(ToString::to_string)),
             Self::Switch(_, [off, on]) => format!("`{on}` or `{off}`"),
@@ -115,8 +115,8 @@ impl Place<'_> {
     pub(crate) fn put(self, text: &str, range: [f64; 2]) -> Option<()> {
         match self {
             Self::Number(number) => number.put(Some(parsed(text, range, number.is_whole())?)),
-            Self::Optional(number, none) if text == none => number.put(None),
-            Self::Optional(number, _) => number.put(Some(parsed(text, range, number.is_whole())?)),
+            Self::Optional(number, none, _) if text == none => number.put(None),
+            Self::Optional(number, ..) => number.put(Some(parsed(text, range, number.is_whole())?)),
             Self::Degrees(angle) => *angle = (parsed(text, range, false)? as f32).to_radians(),
             Self::Numbers(all) => {
                 let found: Option<Vec<f64>> = text.split(':').map(|text| parsed(text, range, false)).collect();
@@ -141,7 +141,7 @@ impl Place<'_> {
         let number = |value: f64| (value as f32).to_string();
         match self {
             Self::Number(own) => own.get().map(number),
-            Self::Optional(own, none) => Some(own.get().map_or_else(|| (*none).to_owned(), number)),
+            Self::Optional(own, none, _) => Some(own.get().map_or_else(|| (*none).to_owned(), number)),
             Self::Degrees(angle) => Some(angle.to_degrees().to_string()),
             Self::Numbers(all) => Some(all.iter().map(ToString::to_string).collect::<Vec<_>>().join(":")),
             Self::Count(count, _) => Some(count.to_string()),
@@ -156,6 +156,7 @@ impl Place<'_> {
         match self {
             Self::Count(_, all) => all.iter().map(ToString::to_string).collect(),
             Self::Word(word) => word.words().into_iter().map(str::to_owned).collect(),
+            Self::Optional(_, none, usual) => vec![(*none).to_owned(), usual.to_string()],
             _ => Vec::new(),
         }
     }
@@ -165,7 +166,7 @@ impl Place<'_> {
         let range = if matches!(self, Self::Degrees(_)) { range.map(f64::to_radians) } else { range };
         let outside = |value: &f64| !contains(range, *value);
         let value = match self {
-            Self::Number(number) | Self::Optional(number, _) => number.get().filter(outside)?.to_string(),
+            Self::Number(number) | Self::Optional(number, ..) => number.get().filter(outside)?.to_string(),
             Self::Degrees(angle) => Some(f64::from(**angle)).filter(outside)?.to_string(),
             Self::Numbers(all) => all.iter().map(|number| f64::from(*number)).find(outside)?.to_string(),
             Self::Count(count, all) => (!all.contains(count)).then(|| count.to_string())?,

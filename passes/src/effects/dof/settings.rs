@@ -99,8 +99,10 @@ impl SettingsTable for DofSettings {
             .about("focus distance from the eye plane"),
         number("aperture", "f_number", [0.1, 1e3], |s: &mut Self| num(&mut s.f_number))
             .about("f-number: focal length over aperture diameter; more is sharper"),
-        number("focal", "focal_length_m", [1e-3, 10.0], |s: &mut Self| Place::Optional(&mut s.focal_length_m, "view"))
-            .about("focal length; `view` derives it from the field of view on 24 mm film"),
+        number("focal", "focal_length_m", [1e-3, 10.0], |s: &mut Self| {
+            Place::Optional(&mut s.focal_length_m, "view", 0.028)
+        })
+        .about("focal length; `view` derives it from the field of view on 24 mm film"),
         number("scale", "scale", [0.0, 1e3], |s: &mut Self| num(&mut s.scale)).about("factor on circles of confusion"),
         choice("resolution", "resolution", |s: &mut Self| word(&mut s.resolution)).about("resolution of the gather"),
         number("before", "most_before_px", [0.0, 32.0], |s: &mut Self| num(&mut s.most_before_px))

@@ -46,7 +46,7 @@ impl SettingsTable for ShadowSettings {
         .about("split distances between cascades, relative to the range"),
         choice("fit", "fit", |s: &mut Self| word(&mut s.fit))
             .about("fit of the sun's maps: visible receivers, with or without a warp, or whole texels of a sphere"),
-        number("far", "far_m", [0.01, 1e7], |s: &mut Self| Place::Optional(&mut s.far_m, "none"))
+        number("far", "far_m", [0.01, 1e7], |s: &mut Self| Place::Optional(&mut s.far_m, "none", 50.0))
             .about("greatest distance of the sun's shadows from the eye, toward which they fade"),
         number("constant-bias", "bias.constant_m", [0.0, 10.0], |s: &mut Self| num(&mut s.bias.constant_m))
             .about("offset of casters away from the light"),
@@ -56,7 +56,7 @@ impl SettingsTable for ShadowSettings {
             .about("slope-scaled polygon offset of casters"),
         number("bias-steps", "bias.steps", [-1e6, 1e6], |s: &mut Self| num(&mut s.bias.steps))
             .about("constant polygon offset of casters, in steps of depth"),
-        number("bulb", "bulb_m", [1e-6, 1e3], |s: &mut Self| Place::Optional(&mut s.bulb_m, "disc"))
+        number("bulb", "bulb_m", [1e-6, 1e3], |s: &mut Self| Place::Optional(&mut s.bulb_m, "disc", 0.1))
             .about("radius of the light for penumbrae; `disc` derives it from the light's own size"),
         number("blur", "moments.blur_texels", [0.0, 125.0], |s: &mut Self| num(&mut s.moments.blur_texels))
             .about("width of the Gaussian blur of moments"),

@@ -112,8 +112,10 @@ impl SettingsTable for Shading {
             .about("blur of the background behind rough refractive surfaces: by distance, or by an angle alone"),
         choice("light-window", "light_window", |s: &mut Self| word(&mut s.light_window))
             .about("window function that ends punctual lights at their range"),
-        number("light-fade", "light_fade_m", [0.01, 1e9], |s: &mut Self| Place::Optional(&mut s.light_fade_m, "off"))
-            .about("distance beyond which punctual lights are off"),
+        number("light-fade", "light_fade_m", [0.01, 1e9], |s: &mut Self| {
+            Place::Optional(&mut s.light_fade_m, "off", 100.0)
+        })
+        .about("distance beyond which punctual lights are off"),
     ];
 }
 

@@ -4,6 +4,7 @@
 //! a mirror floor, compared with the formulas of `truth::reflection`.
 
 use framegraph_passes::ReflectionSettings;
+use framegraph_passes::SettingsTable;
 use framegraph_passes::effects::depth::structure::Resolution;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use glam::DVec3;
