@@ -63,7 +63,6 @@ mod selected;
 mod shape;
 mod slot;
 mod spanned;
-mod suggest;
 mod syntax;
 mod value;
 mod version;

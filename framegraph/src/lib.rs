@@ -119,6 +119,7 @@ pub mod resolve;
 pub mod resource;
 pub mod sanitize;
 mod spans;
+pub mod suggest;
 mod warning;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};

@@ -31,6 +31,7 @@
 
 mod before;
 mod blended;
+mod fields;
 pub mod frame_settings;
 mod glass;
 mod lens;
@@ -40,6 +41,7 @@ pub mod plugins;
 #[cfg(feature = "files")]
 pub mod settings_file;
 mod shadows;
+pub mod tables;
 pub mod world;
 
 use crate::effects::bloom::BloomSettings;

@@ -8,13 +8,13 @@
 mod bake;
 mod by;
 mod error;
-mod keys;
+mod fields;
 mod look;
 mod tables;
 
 pub use bake::Baked;
 pub use by::{GradeBy, TableDesc, TableFormat};
 pub use error::GradingError;
-pub use keys::tone_map;
+pub use fields::tone_map;
 pub use look::{Extras, Look, OwnCurve};
 pub use tables::GradingTables;

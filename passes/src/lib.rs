@@ -150,4 +150,5 @@ pub use light::shading::{Quality, Shading};
 pub use quality::preset::Preset;
 pub use settings::frame_index::FrameIndex;
 pub use settings::precision::Precision;
+pub use settings::table::SettingsTable;
 pub use stages::{Handles, Slot, Stage, StageError};

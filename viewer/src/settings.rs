@@ -1,11 +1,13 @@
 //! Settings of the standard frame as a tree of values, so that a panel can show every field without knowing it.
 
 mod choices;
+#[cfg(test)]
+mod document;
 mod tooltips;
 mod tree;
 
 pub use choices::{Alternatives, alternatives};
-pub use tooltips::about;
+pub use tooltips::{about, range};
 pub use tree::{Node, TreeError, parse};
 
 use framegraph_passes::FrameSettings;

@@ -1,12 +1,12 @@
 //! Errors of files, with position, names and a hint.
 
-use super::suggest::nearest;
 use super::syntax::listed;
 use super::value::ValueReason;
 use crate::compile::CompileReason;
 use crate::error::DeclareReason;
 use crate::error_list::Errors;
 use crate::error_macros::{error_enum, impl_error, show};
+use crate::suggest::nearest;
 use std::fmt;
 
 /// One error of a file. Displays as one line: `path:line:column: reason; hint`.

@@ -1,6 +1,6 @@
 //! RON syntax options, and readable messages for RON errors.
 
-use super::suggest::nearest;
+use crate::suggest::nearest;
 use ron::Options;
 use ron::extensions::Extensions;
 

@@ -12,7 +12,6 @@
 
 mod chain;
 mod flare;
-mod keys;
 mod pass;
 mod settings;
 

@@ -9,7 +9,6 @@
 //! focus are skipped. The gather is Filament's, in fewer passes. `docs/design/lens.md` has its cost, and its error against
 //! rays through a thin lens.
 
-mod keys;
 mod pass;
 mod settings;
 

@@ -1,9 +1,10 @@
 //! Fog: distant surfaces fade into light scattered by the air. A shader feature of surfaces and background, so a frame
 //! without fog pays nothing. Filament's model; `docs/design/lens.md` has its error.
 
-mod keys;
-
 use crate::gpu_scene::view::CameraView;
+use crate::settings::field::{Field, choice, number, text};
+use crate::settings::place::{Place, num, parsed};
+use crate::settings::table::SettingsTable;
 use framegraph_shaders::layout::FogUniforms;
 use glam::Vec3;
 
@@ -125,6 +126,127 @@ impl FogSettings {
             per_sharp_m: sharp.map_or(0.0, |(sharp_m, _)| sharp_m.max(1e-3).recip()),
             sharp_levels: sharp.map_or(0.0, |(_, levels)| levels.max(0.0)),
             ..FogUniforms::default()
+        }
+    }
+}
+
+/// Range of radiance in nits.
+const NITS: [f64; 2] = [0.0, 1e6];
+/// Range of exponents of the glow.
+const GLOW_SIZE: [f64; 2] = [1e-2, 1e4];
+
+impl SettingsTable for FogSettings {
+    const OPTION: &'static str = "fog";
+    const PATH: &'static str = "settings.fog";
+    const ABOUT: &'static str = "height fog";
+    const DEFAULT: Self = Self::DEFAULT;
+    const METHODS: &'static [(&'static str, Self)] = &[("on", Self::DEFAULT)];
+    const FIELDS: &'static [Field<Self>] = &[
+        number("density", "density", [0.0, 1e3], |s: &mut Self| num(&mut s.density))
+            .about("extinction at the height, in 1/m"),
+        number("height", "height_m", [-1e6, 1e6], |s: &mut Self| num(&mut s.height_m))
+            .about("height of the density, world space"),
+        number("falloff", "falloff", [0.0, 1e3], |s: &mut Self| num(&mut s.falloff))
+            .about("height falloff of density, in 1/m; 0 is uniform fog"),
+        number("start", "start_m", [0.0, 1e9], |s: &mut Self| num(&mut s.start_m))
+            .about("distance from the eye where fog begins"),
+        number("cut-off", "cut_off_m", [0.0, f64::INFINITY], |s: &mut Self| num(&mut s.cut_off_m))
+            .about("distance beyond which there is no fog; the sky is at 1e10 m"),
+        number("opacity", "most_opacity", [0.0, 1.0], |s: &mut Self| num(&mut s.most_opacity)).about("maximum opacity"),
+        text(
+            "color",
+            "color",
+            "`environment`, or R:G:B from 0 to 1000000",
+            &["environment", "2000:2500:3000"],
+            set_color,
+        )
+        .about("scattered light: radiance in nits, or the blurred environment")
+        .with(NITS, |s: &mut Self| match &mut s.color {
+            FogColor::Radiance(nits) => Place::Numbers(nits),
+            FogColor::Environment { .. } => Place::Free,
+        }),
+        number("tint", "color.tint", [0.0, 1e3], |s: &mut Self| environment(s, |(tint, ..)| Place::Numbers(tint)))
+            .about("factor on the radiance of the environment"),
+        number("sharp", "color.sharp_m", [1e-3, 1e9], |s: &mut Self| environment(s, |(_, sharp_m, _)| num(sharp_m)))
+            .about("distance at which the environment is sharper by the sharp levels"),
+        number("sharp-levels", "color.sharp_levels", [0.0, 16.0], |s: &mut Self| {
+            environment(s, |(.., levels)| num(levels))
+        })
+        .about("mip levels of blur removed at that distance"),
+        text("glow", "glow", "`off` or a number from 0.01 to 10000", &["off", "20"], set_glow)
+            .about("scattered sunlight: exponent of the cosine between ray and sun; more is smaller"),
+        number("glow-size", "glow.size", GLOW_SIZE, |s: &mut Self| glow(s, |g| num(&mut g.size)))
+            .about("exponent of the glow alone"),
+        number("glow-start", "glow.start_m", [0.0, 1e9], |s: &mut Self| glow(s, |g| num(&mut g.start_m)))
+            .about("distance from the eye where scattering of sunlight begins"),
+        choice("mean", "exact", |s: &mut Self| Place::Switch(&mut s.exact, ["filament", "exact"]))
+            .about("averages density over the foggy part of the ray (`exact`), or over the whole ray"),
+    ];
+}
+
+fn environment(
+    s: &mut FogSettings,
+    place: for<'a> fn((&'a mut [f32; 3], &'a mut f32, &'a mut f32)) -> Place<'a>,
+) -> Place<'_> {
+    match &mut s.color {
+        FogColor::Environment { tint, sharp_m, sharp_levels } => place((tint, sharp_m, sharp_levels)),
+        FogColor::Radiance(_) => Place::Only("color=environment"),
+    }
+}
+
+fn glow(s: &mut FogSettings, place: fn(&mut FogGlow) -> Place<'_>) -> Place<'_> {
+    s.glow.as_mut().map_or(Place::Only("glow=SIZE"), place)
+}
+
+fn set_color(s: &mut FogSettings, text: &str) -> Option<()> {
+    s.color = match text {
+        "environment" => FogSettings::DEFAULT.color,
+        _ => {
+            let mut nits = [0.0; 3];
+            Place::Numbers(&mut nits).put(text, NITS)?;
+            FogColor::Radiance(nits)
+        }
+    };
+    Some(())
+}
+
+fn set_glow(s: &mut FogSettings, text: &str) -> Option<()> {
+    let start_m = s.glow.map_or(0.0, |glow| glow.start_m);
+    s.glow = match text {
+        "off" => None,
+        _ => Some(FogGlow { size: parsed(text, GLOW_SIZE, false)? as f32, start_m }),
+    };
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_describes_the_settings() {
+        crate::settings::table::test::<FogSettings>();
+    }
+
+    #[test]
+    fn fields_are_set_by_name() {
+        let air = FogSettings::from_text("on:cut-off=inf,mean=filament,tint=1:0.5:1,sharp=7,sharp-levels=3");
+        let color = FogColor::Environment { tint: [1.0, 0.5, 1.0], sharp_m: 7.0, sharp_levels: 3.0 };
+        assert_eq!(air, Ok(Some(FogSettings { color, exact: false, ..FogSettings::DEFAULT })));
+        let sun = FogSettings::from_text("on:glow=8,glow-start=2,color=1:2:3");
+        let (color, glow) = (FogColor::Radiance([1.0, 2.0, 3.0]), Some(FogGlow { start_m: 2.0, size: 8.0 }));
+        assert_eq!(sun, Ok(Some(FogSettings { color, glow, ..FogSettings::DEFAULT })));
+        for (text, named) in [
+            ("haze", "haze: unknown"),
+            ("on:cut-off=NaN", "cut-off=NaN"),
+            ("on:color=1:2", "color=1:2: expected `environment`, or R:G:B"),
+            ("on:color=1:1:1,tint=1:1:1", "tint: only `color=environment`"),
+            ("on:glow-start=1", "glow-start: only `glow=SIZE`"),
+            ("on:glow=0", "glow=0"),
+            ("on:mean=middle", "mean=middle: expected `exact` or `filament`"),
+        ] {
+            let error = FogSettings::from_text(text).expect_err(text).to_string();
+            assert!(error.contains(named) && !error.contains('\n'), "{text}: {error}");
         }
     }
 }

@@ -10,7 +10,7 @@
 //! material's own occlusion, and occludes reflections with it. `docs/design/occlusion.md` has cost and error of each.
 
 mod blur;
-mod keys;
+mod fields;
 mod pass;
 mod settings;
 

@@ -4,6 +4,7 @@
 //! A lookup table can replace grading and tone curve. One pass applies all effects, or each has a pass of its own. If
 //! the plan inlines the pass, the shader that computes the color applies the effects.
 
+mod fields;
 pub mod pixel_effects;
 pub mod tone_resolve;
 
@@ -16,7 +17,7 @@ use crate::program::{Interface, ProgramDesc, Programs};
 use crate::settings::frame_index::FrameIndex;
 use framegraph::{DeclareError, Format, Intent, Pass, PassBuilder, Target, Texture, TextureDesc, View};
 use framegraph_shaders::layout::{
-    EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, ToneMap, VignetteUniforms,
+    EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, Grading, GradingUniforms, VignetteUniforms,
 };
 use framegraph_shaders::reference::grade::Grade;
 use framegraph_shaders::{Module, library};
@@ -99,12 +100,7 @@ impl PostSettings {
         compensation_ev: 0.0,
         vignette_ev: 0.0,
         edge_fade: None,
-        look: Look {
-            grading: Grading::NEUTRAL,
-            tone_map: ToneMap::Hill,
-            luminance_scaling: false,
-            gamut_mapping: false,
-        },
+        look: Look::DEFAULT,
         by: GradeBy::Direct,
         dither: 1.0,
     };

@@ -14,7 +14,6 @@
 //! sums are kept per sample.
 
 mod composite;
-mod keys;
 mod moments;
 mod peeling;
 mod settings;

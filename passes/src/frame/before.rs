@@ -48,7 +48,7 @@ pub(super) fn occlusion<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?S
 }
 
 /// Declares the structure at full resolution, if contact shadows or reflections read it.
-pub(super) fn full_structure<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized + 'static>(
+pub(super) fn full_structure<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized>(
     frame: &mut Frame<W>,
     handles: &mut Handles,
     (wanted, levels): (bool, u8),

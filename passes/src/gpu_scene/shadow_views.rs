@@ -2,7 +2,7 @@
 //!
 //! | file | content |
 //! | --- | --- |
-//! | `settings.rs` | shadow settings, in Filament's terms |
+//! | `settings.rs`, `fields.rs` | shadow settings, in Filament's terms, and their table |
 //! | `view.rs` | all maps of a view, fitted by `sun.rs` (with `splits.rs`, `volume.rs`, `warp.rs`) and `local.rs` |
 //! | `atlas.rs` | placement of maps in the layers that they share |
 //! | `need.rs` | maps that a view needs |
@@ -11,6 +11,7 @@
 //! ([`CameraView::together`](crate::CameraView::together)).
 
 mod atlas;
+mod fields;
 mod fitted;
 mod local;
 mod need;

@@ -1,6 +1,6 @@
 //! Evaluation of color grading: per pixel, or from a table.
 
-use crate::settings::key_value::{KeyValue, OptionError};
+use crate::settings::key_value::OptionError;
 
 /// Evaluation of a look. The faster one depends on the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -61,8 +61,8 @@ impl GradeBy {
     /// Fails with [`OptionError::Value`] for any other text.
     pub fn from_text(text: &str) -> Result<Self, OptionError> {
         let mut desc = TableDesc::DEFAULT;
-        let choice = KeyValue { key: "by", value: text };
-        let wrong = || choice.wrong("`direct` or `table[:SIZE[:rgb10|f16]]` with a size from 16 to 64");
+        let takes = "`direct` or `table[:SIZE[:rgb10|f16]]` with a size from 16 to 64";
+        let wrong = || OptionError::Value { key: "by".into(), value: text.into(), takes: takes.into() };
         let mut words = text.split(':');
         match words.next() {
             Some("direct") if text == "direct" => return Ok(Self::Direct),

@@ -53,6 +53,10 @@ pub struct Extras {
 }
 
 impl Look {
+    /// Neutral grading, and Hill's fit of the ACES curve.
+    pub const DEFAULT: Self =
+        Self { grading: Grading::NEUTRAL, tone_map: ToneMap::Hill, luminance_scaling: false, gamut_mapping: false };
+
     /// Checks that a shader can compute the whole look.
     ///
     /// # Errors

@@ -5,8 +5,9 @@
 //! shading. `ultra` is `high` with more accurate image-based light. Table, bands and window also apply when light is
 //! prefiltered.
 
+mod fields;
+
 use crate::light::ibl::{DfgSettings, EnvironmentFormat, IblSettings};
-use crate::settings::key_value::{KeyValue, OptionError};
 use crate::settings::precision::Precision;
 use framegraph_scene::environment::{ShBands, ShWindow};
 use framegraph_shaders::reference::dfg::Visibility;
@@ -268,137 +269,13 @@ impl Shading {
             self.light_fade_m.map_or(0.0, |far| f64::from(far.clamp(0.01, 1e9)).powi(-2)),
         ]
     }
-
-    /// Sets a field by name: `visibility=exact`, `floor=0.089`, `bands=5`, `aa=0.15:0.2`. [`Shading::KEYS`] lists all
-    /// keys. Setting the visibility term also sets its table.
-    ///
-    /// # Errors
-    /// Fails on an unknown key or an invalid value, with a message that lists the valid ones.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
-        let choice = KeyValue { key, value };
-        let (wrong, switch) = (|takes| choice.wrong(takes), || choice.switch());
-        let term = || match value {
-            "exact" => Ok(Visibility::Exact),
-            "fast" => Ok(Visibility::Fast),
-            _ => Err(wrong("`exact` or `fast`")),
-        };
-        match key {
-            "visibility" => (self.visibility, self.table) = (term()?, term()?),
-            "table" => self.table = term()?,
-            "floor" => self.roughness_floor = choice.number(0.045, 1.0)?,
-            "f90-fades" => self.f90_fades = switch()?,
-            "compensation" => {
-                (self.compensate_image, self.compensate_punctual) = match value {
-                    "on" => (true, true),
-                    "off" => (false, false),
-                    "image" => (true, false),
-                    "punctual" => (false, true),
-                    _ => return Err(wrong("`on`, `off`, `image` or `punctual`")),
-                }
-            }
-            "bands" => {
-                self.bands = match value {
-                    "2" => ShBands::Two,
-                    "3" => ShBands::Three,
-                    "5" => ShBands::Five,
-                    _ => return Err(wrong("2, 3 or 5")),
-                }
-            }
-            "window" => {
-                self.window = match (value, value.split_once(':')) {
-                    ("none", _) => ShWindow::None,
-                    ("hann", _) => ShWindow::Hann,
-                    ("sinc", _) => ShWindow::Sinc,
-                    (_, Some(("laplacian", lambda))) => {
-                        ShWindow::Laplacian { lambda: KeyValue { key, value: lambda }.number(0.0, 1.0)?.into() }
-                    }
-                    _ => return Err(wrong("`none`, `hann`, `sinc` or laplacian:LAMBDA")),
-                }
-            }
-            "irradiance" => {
-                self.irradiance = match value {
-                    "harmonics" => Irradiance::Harmonics,
-                    "cube" => Irradiance::Cube,
-                    _ => return Err(wrong("`harmonics` or `cube`")),
-                }
-            }
-            "environment-format" => {
-                self.environment_format = match value {
-                    "half" => EnvironmentFormat::Half,
-                    "rg11b10" => EnvironmentFormat::Rg11b10,
-                    "rgbm" => EnvironmentFormat::Rgbm,
-                    _ => return Err(wrong("`half`, `rg11b10` or `rgbm`")),
-                }
-            }
-            "aa" => {
-                self.specular_aa = match value {
-                    "off" => None,
-                    "on" => Some(SpecularAa::FILAMENT),
-                    _ => {
-                        let (variance, threshold) =
-                            value.split_once(':').ok_or_else(|| wrong("`on`, `off` or VARIANCE:THRESHOLD"))?;
-                        let number = |value| KeyValue { key, value }.number(0.0, 1.0);
-                        let (variance, threshold) = (number(variance)?, number(threshold)?);
-                        (variance > 0.0).then_some(SpecularAa { variance, threshold })
-                    }
-                }
-            }
-            "multi-bounce" => self.multi_bounce = switch()?,
-            "specular-occlusion" => self.specular_occlusion = switch()?,
-            "micro-shadows" => self.micro_shadows = switch()?,
-            "fast-coat" => self.fast_coat = switch()?,
-            "coat-ior-change" => self.coat_ior_change = switch()?,
-            "transmission-blur" => {
-                self.transmission_blur = match value {
-                    "distance" => TransmissionBlur::Distance,
-                    "angle" => TransmissionBlur::Angle,
-                    _ => return Err(wrong("`distance` or `angle`")),
-                }
-            }
-            "light-window" => {
-                self.light_window = match value {
-                    "gltf" => LightWindow::Gltf,
-                    "filament" => LightWindow::Filament,
-                    _ => return Err(wrong("`gltf` or `filament`")),
-                }
-            }
-            "light-fade" => {
-                self.light_fade_m = match value {
-                    "off" => None,
-                    _ => Some(choice.number(0.01, 1e9)?),
-                }
-            }
-            _ => return Err(choice.unknown(&Self::KEYS)),
-        }
-        Ok(())
-    }
-
-    /// Keys of [`Shading::set`].
-    pub const KEYS: [&str; 18] = [
-        "visibility",
-        "table",
-        "floor",
-        "f90-fades",
-        "compensation",
-        "bands",
-        "window",
-        "irradiance",
-        "environment-format",
-        "aa",
-        "multi-bounce",
-        "specular-occlusion",
-        "micro-shadows",
-        "fast-coat",
-        "coat-ior-change",
-        "transmission-blur",
-        "light-window",
-        "light-fade",
-    ];
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::key_value::OptionError;
+    use crate::settings::table::SettingsTable;
     use framegraph_shaders::{Feature, Features, library, resolve};
 
     fn value(shading: &Shading, bands: ShBands, name: &str) -> Option<f64> {
@@ -438,49 +315,21 @@ mod tests {
     }
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), OptionError> {
+    fn fields_are_set_by_name() -> Result<(), OptionError> {
         for quality in Quality::ALL {
             assert_eq!(Quality::from_name(quality.name()), Some(quality));
             assert_eq!(quality.light().dfg.visibility, quality.shading().visibility, "table and term are a pair");
         }
         assert_eq!(Quality::from_name("medium"), None);
+        crate::settings::table::test::<Shading>();
         let mut low = Quality::High.shading();
-        for (key, value) in [
-            ("visibility", "fast"),
-            ("floor", "0.089"),
-            ("f90-fades", "off"),
-            ("compensation", "on"),
-            ("bands", "3"),
-            ("window", "none"),
-            ("irradiance", "harmonics"),
-            ("environment-format", "rg11b10"),
-            ("aa", "on"),
-            ("micro-shadows", "on"),
-            ("multi-bounce", "off"),
-            ("specular-occlusion", "on"),
-            ("fast-coat", "on"),
-            ("coat-ior-change", "on"),
-            ("transmission-blur", "distance"),
-            ("light-window", "gltf"),
-            ("light-fade", "off"),
-        ] {
-            assert!(Shading::KEYS.contains(&key));
-            low.set(key, value)?;
-        }
+        low.set_all("visibility=fast,floor=0.089,f90-fades=off,multi-bounce=off,fast-coat=on")?;
         assert_eq!(low, Quality::Low.shading());
         low.set("table", "exact")?;
         assert_eq!((low.visibility, low.table), (Visibility::Fast, Visibility::Exact));
-        for (key, value) in [
-            ("coat-ior-change", "off"),
-            ("transmission-blur", "angle"),
-            ("light-window", "filament"),
-            ("light-fade", "100"),
-            ("irradiance", "cube"),
-            ("environment-format", "rgbm"),
-        ] {
-            low.set(key, value)?;
-        }
-        assert_eq!((low.coat_ior_change, low.light_window), (false, LightWindow::Filament));
+        low.set_all(
+            "coat-ior-change=off,transmission-blur=angle,light-window=filament,light-fade=100,irradiance=cube",
+        )?;
         for (name, expected) in [
             ("COAT_IOR_CHANGE", 0.0),
             ("TRANSMISSION_BY_ANGLE", 1.0),
@@ -490,27 +339,22 @@ mod tests {
         ] {
             assert_eq!(value(&low, ShBands::Three, name), Some(expected), "{name}");
         }
-        assert_eq!(low.light(Quality::Low).image.format, EnvironmentFormat::Rgbm);
-        low.set("window", "laplacian:0.01")?;
-        assert_eq!(low.light(Quality::Low).image.window, ShWindow::Laplacian { lambda: f64::from(0.01_f32) });
-        low.set("aa", "0.25:0.18")?;
+        low.set_all("environment-format=rgbm,window=laplacian:0.5,aa=0.25:0.18,compensation=image")?;
+        let image = low.light(Quality::Low).image;
+        assert_eq!((image.format, image.window), (EnvironmentFormat::Rgbm, ShWindow::Laplacian { lambda: 0.5 }));
         assert_eq!(low.specular_aa, Some(SpecularAa { variance: 0.25, threshold: 0.18 }));
-        for (key, value) in [
-            ("gloss", "1"),
-            ("floor", "0"),
-            ("floor", "NaN"),
-            ("bands", "4"),
-            ("window", "laplacian"),
-            ("aa", "1"),
-            ("aa", "x:y"),
-            ("light-window", "square"),
-            ("transmission-blur", "on"),
-            ("light-fade", "0"),
-            ("irradiance", "2"),
-            ("environment-format", "float"),
+        assert_eq!((low.compensate_image, low.compensate_punctual), (true, false));
+        for (key, value, named) in [
+            ("gloss", "1", "gloss: unknown choice"),
+            ("bandz", "3", "bandz: unknown choice; did you mean `bands`?"),
+            ("floor", "0", "floor=0: expected a number from 0.045 to 1"),
+            ("bands", "4", "bands=4: expected `2`, `3` or `5`"),
+            ("window", "laplacian", "window=laplacian"),
+            ("aa", "x:y", "aa=x:y: expected `on`, `off` or VARIANCE:THRESHOLD"),
+            ("light-fade", "0", "light-fade=0: expected `off` or a number from 0.01 to"),
         ] {
-            let told = low.set(key, value).expect_err("that is no choice").to_string();
-            assert!(told.contains(key) && !told.contains('\n'), "{told}");
+            let error = low.set(key, value).expect_err(key).to_string();
+            assert!(error.starts_with(named) && !error.contains('\n'), "{error}");
         }
         Ok(())
     }

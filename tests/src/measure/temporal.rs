@@ -3,6 +3,7 @@
 use framegraph::{
     ClearValue, DeclareError, Extent, Format, Intent, Options, Plan, Scratch, Target, Texture, TextureDesc, compile,
 };
+use framegraph_passes::SettingsTable;
 use framegraph_passes::effects::taa::Taa;
 use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;

@@ -1,6 +1,7 @@
 //! Material lobes and shading options in the standard frame, compared with their formulas.
 
 use crate::stage::{Set, Shot, gpu, precisions};
+use framegraph_passes::SettingsTable;
 use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{PostSettings, Quality, Settings, Shading};
 use framegraph_scene::material::{Anisotropy, ClearCoat, Sheen, Specular, Subsurface};

@@ -5,6 +5,7 @@ mod shaded;
 
 use crate::stage::{self, gpu, precisions};
 use framegraph::{Caps, Counts, Options, Target, TextureDesc};
+use framegraph_passes::SettingsTable;
 use framegraph_passes::effects::depth::structure::{Resolution, structure};
 use framegraph_passes::effects::occlusion::OcclusionSettings;
 use framegraph_passes::stages::Handles;

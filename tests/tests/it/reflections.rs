@@ -5,6 +5,7 @@ mod shaded;
 
 use crate::stage::{self, gpu};
 use framegraph::{Caps, Counts, Options};
+use framegraph_passes::SettingsTable;
 use framegraph_passes::effects::depth::structure::Resolution;
 use framegraph_passes::effects::reflection::ReflectionSettings;
 use framegraph_passes::effects::transmission::scene_levels;

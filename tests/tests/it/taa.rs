@@ -2,6 +2,7 @@
 
 use crate::stage::{self, Set, Shot, declared, gpu};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, compile};
+use framegraph_passes::SettingsTable;
 use framegraph_passes::effects::taa::Clipping;
 use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{Settings, Shading, TaaSettings, ViewId};

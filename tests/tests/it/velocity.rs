@@ -2,6 +2,7 @@
 
 use crate::stage::{self, gpu, lighting};
 use framegraph::{Caps, Counts, Options, Plan, Scratch, Target, Texture, compile};
+use framegraph_passes::SettingsTable;
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::stages::{Handles, Slot};
 use framegraph_passes::{CameraView, LightSearch, Settings, Shading, TaaSettings, ViewId, World, stages};

@@ -1,30 +1,23 @@
-//! Tooltips of settings fields from `docs/reference/settings.md`.
+//! Tooltips and ranges of fields, from the tables of settings.
 
-/// Text of the document at build time.
-const TEXT: &str = include_str!("../../../docs/reference/settings.md");
+use framegraph_passes::frame::tables::{Row, sections};
 
-/// Returns the documentation of a field by its path, such as `settings.shadows.filter`: its own row, or that of its parent.
+/// Returns the description of a field by its path, such as `settings.shadows.filter`: its own, or that of its effect.
 pub fn about(path: &str) -> Option<String> {
-    let mut names = path.split('.');
-    let first = names.next()?;
-    let (section, name) = match (first, names.next()) {
-        ("settings", Some(name)) => ("## `settings`", name),
-        _ => ("## `frame`", first),
-    };
-    let rows = TEXT.split_once(section)?.1.split("\n## ").next()?;
-    let row = rows.lines().find_map(|line| line.strip_prefix(&format!("| `{name}` | ")))?;
-    let what = row.split(" | ").next()?;
-    Some(format!("{name}: {}", plain(what)))
+    if let Some(row) = row(path) {
+        return Some(format!("{}: {} ({})", row.key, row.about, row.takes));
+    }
+    let section = sections().iter().find(|section| !section.path.is_empty() && section.path == path)?;
+    Some(section.about.replace('`', ""))
 }
 
-/// Removes Markdown markup and link targets.
-fn plain(text: &str) -> String {
-    let mut out = String::new();
-    for (index, part) in text.split("](").enumerate() {
-        let after = if index == 0 { part } else { part.split_once(')').map_or("", |(_, after)| after) };
-        out.push_str(after);
-    }
-    out.replace(['`', '['], "")
+/// Returns the range of the number at a path.
+pub fn range(path: &str) -> Option<[f64; 2]> {
+    row(path)?.range
+}
+
+fn row(path: &str) -> Option<&'static Row> {
+    sections().iter().flat_map(|section| &section.rows).find(|row| !row.path.is_empty() && row.path == path)
 }
 
 #[cfg(test)]
@@ -32,10 +25,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fields_are_found_and_marks_are_gone() {
-        let shadows = about("settings.shadows.bias.slope").expect("a row");
-        assert!(shadows.starts_with("shadows: None, or map_texels (16 to 16384)"), "{shadows}");
-        assert!(about("settings.taa").is_some_and(|text| text.ends_with("(TAA)")));
-        assert!(about("quality").is_some_and(|text| text.contains("Ultra")) && about("settings.nothing").is_none());
+    fn fields_and_effects_are_described() {
+        let slope = about("settings.shadows.bias.slope").expect("a row");
+        assert!(slope.starts_with("slope-bias: ") && slope.ends_with("(a number from 0 to 100)"), "{slope}");
+        assert_eq!(range("settings.shadows.bias.slope"), Some([0.0, 100.0]));
+        assert_eq!(about("settings.taa").as_deref(), Some("temporal anti-aliasing"));
+        assert!(about("quality").is_some_and(|text| text.contains("ultra")) && about("settings.nothing").is_none());
     }
 }

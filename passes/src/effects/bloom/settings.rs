@@ -1,5 +1,9 @@
 //! Settings of bloom. Defaults are Filament's.
 
+use crate::settings::field::{Field, choice, number, text};
+use crate::settings::place::{Place, Words, flag, num, switched, word};
+use crate::settings::table::SettingsTable;
+
 /// Source, extent and blending of bloom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
@@ -179,5 +183,119 @@ impl FlareSettings {
     /// Returns true if the settings have a visible effect.
     pub fn is_seen(&self) -> bool {
         self.ghosts > 0 || self.halo_thickness > 0.0
+    }
+}
+
+impl Words for BloomQuality {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("low", Self::Low), ("medium", Self::Medium), ("high", Self::High)];
+}
+
+impl Words for Blend {
+    const WORDS: &'static [(&'static str, Self)] = &[("add", Self::Add), ("interpolate", Self::Interpolate)];
+}
+
+impl Words for Threshold {
+    const WORDS: &'static [(&'static str, Self)] = &[("off", Self::None), ("soft", Self::Soft), ("hard", Self::Hard)];
+}
+
+/// Range of thresholds, up to the brightest half float.
+const GLOW: [f64; 2] = [0.0, 65504.0];
+/// Range of multiples of pixels.
+const MULTIPLE_PX: [f64; 2] = [1.0, 65536.0];
+
+fn flare(s: &mut BloomSettings, place: fn(&mut FlareSettings) -> Place<'_>) -> Place<'_> {
+    s.flare.as_mut().map_or(Place::Only("flare=on"), place)
+}
+
+impl SettingsTable for BloomSettings {
+    const OPTION: &'static str = "bloom";
+    const PATH: &'static str = "settings.bloom";
+    const ABOUT: &'static str = "bloom and lens flare";
+    const DEFAULT: Self = Self::DEFAULT;
+    const METHODS: &'static [(&'static str, Self)] = &[("on", Self::DEFAULT)];
+    const FIELDS: &'static [Field<Self>] = &[
+        number("strength", "strength", [0.0, 1.0], |s: &mut Self| num(&mut s.strength)).about("strength of the glow"),
+        number("height", "height_texels", [16.0, 2048.0], |s: &mut Self| num(&mut s.height_texels))
+            .about("height of the largest level; the width follows the aspect ratio of the picture"),
+        number("levels", "levels", [0.0, Self::MAX_LEVELS as f64], |s: &mut Self| num(&mut s.levels))
+            .about("number of levels, each half as large as the one before; more levels glow farther"),
+        choice("quality", "quality", |s: &mut Self| word(&mut s.quality))
+            .about("reduction of pictures more than twice as high as the largest level"),
+        choice("blend", "blend", |s: &mut Self| word(&mut s.blend)).about("blending of the glow with the picture"),
+        choice("threshold", "threshold", |s: &mut Self| word(&mut s.threshold)).about("part of the picture that glows"),
+        number("at", "threshold_at", GLOW, |s: &mut Self| num(&mut s.threshold_at))
+            .about("threshold in pre-exposed radiance, for modes with a threshold"),
+        number("highlight", "highlight", [1e-2, f64::INFINITY], |s: &mut Self| num(&mut s.highlight))
+            .about("limit that bright glow approaches, in pre-exposed radiance, for modes with a threshold"),
+        choice("fireflies", "fireflies", |s: &mut Self| flag(&mut s.fireflies))
+            .about("reduces the weight of single bright texels, for modes with a threshold"),
+        choice("kernel", "narrow", |s: &mut Self| Place::Switch(&mut s.narrow, ["wide", "narrow"]))
+            .about("sums levels with a tent of three texels (`wide`), or with a box of one"),
+        number("dirt", "dirt", [0.0, 1e3], |s: &mut Self| num(&mut s.dirt))
+            .about("strength of lens dirt, if there is a texture"),
+        number("multiple", "multiple_px", MULTIPLE_PX, |s: &mut Self| num(&mut s.multiple_px))
+            .about("multiple to which the sides of the glowing area are rounded up"),
+        text("flare", "flare", "`on` or `off`", &["off", "on"], |s: &mut Self, text| {
+            s.flare = switched(text)?.then_some(FlareSettings::DEFAULT);
+            Some(())
+        })
+        .about("lens flare: ghosts and a halo"),
+        choice("starburst", "flare.starburst", |s: &mut Self| flare(s, |f| flag(&mut f.starburst)))
+            .about("keeps only rays around the center, which turn with the camera"),
+        number("aberration", "flare.aberration", [0.0, 1.0], |s: &mut Self| flare(s, |f| num(&mut f.aberration)))
+            .about("distance between red and blue as a fraction of the picture"),
+        number("ghosts", "flare.ghosts", [0.0, 16.0], |s: &mut Self| flare(s, |f| num(&mut f.ghosts)))
+            .about("number of ghosts"),
+        number("ghost-spacing", "flare.ghost_spacing", [0.0, 1.0], |s: &mut Self| {
+            flare(s, |f| num(&mut f.ghost_spacing))
+        })
+        .about("distance between ghosts as a fraction of the way through the center"),
+        number("ghost-at", "flare.ghost_threshold", GLOW, |s: &mut Self| flare(s, |f| num(&mut f.ghost_threshold)))
+            .about("glow above which ghosts appear"),
+        number("halo-radius", "flare.halo_radius", [0.0, 0.5], |s: &mut Self| flare(s, |f| num(&mut f.halo_radius)))
+            .about("radius of the halo as a fraction of the height"),
+        number("halo", "flare.halo_thickness", [0.0, 1.0], |s: &mut Self| flare(s, |f| num(&mut f.halo_thickness)))
+            .about("thickness of the halo as a fraction of the height; 0 for no halo"),
+        number("halo-at", "flare.halo_threshold", GLOW, |s: &mut Self| flare(s, |f| num(&mut f.halo_threshold)))
+            .about("glow above which the halo appears"),
+        number("flare-multiple", "flare.multiple_px", MULTIPLE_PX, |s: &mut Self| {
+            flare(s, |f| num(&mut f.multiple_px))
+        })
+        .about("multiple to which the sides of the area are rounded up in which the flare is centered"),
+    ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_describes_the_settings() {
+        crate::settings::table::test::<BloomSettings>();
+    }
+
+    #[test]
+    fn fields_are_set_by_name() {
+        let own = "on:strength=0.5,threshold=hard,highlight=inf,flare=on,ghosts=2,halo-at=4";
+        let flare = FlareSettings { ghosts: 2, halo_threshold: 4.0, ..FlareSettings::DEFAULT };
+        let expected = BloomSettings {
+            strength: 0.5,
+            threshold: Threshold::Hard,
+            highlight: f32::INFINITY,
+            flare: Some(flare),
+            ..BloomSettings::DEFAULT
+        };
+        assert_eq!(BloomSettings::from_text(own), Ok(Some(expected)));
+        assert_eq!(BloomSettings::from_text("on:flare=on,flare=off"), Ok(Some(BloomSettings::DEFAULT)));
+        for (text, named) in [
+            ("glow", "glow: unknown choice; there are off, on"),
+            ("on:levels=13", "levels=13: expected a whole number from 0 to 12"),
+            ("on:highlight=0", "highlight=0: expected a number from 0.01 to inf"),
+            ("on:ghosts=1", "ghosts: only `flare=on`"),
+        ] {
+            let error = BloomSettings::from_text(text).expect_err(text).to_string();
+            assert!(error.contains(named) && !error.contains('\n'), "{text}: {error}");
+        }
     }
 }

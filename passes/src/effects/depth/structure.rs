@@ -12,6 +12,7 @@ use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::{ViewId, Views};
 use crate::program::full_screen::FullScreen;
 use crate::program::{Interface, ProgramDesc, Programs};
+use crate::settings::place::Words;
 use crate::stages::{Handles, Slot, StageError};
 use framegraph::{Aspect, ClearValue, DeclareError, Extent, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
 use framegraph_shaders::{Module, library};
@@ -31,6 +32,10 @@ pub enum Resolution {
     Full,
     /// Half the width and height: a quarter of the texels.
     Half,
+}
+
+impl Words for Resolution {
+    const WORDS: &'static [(&'static str, Self)] = &[("full", Self::Full), ("half", Self::Half)];
 }
 
 impl Resolution {
@@ -163,7 +168,7 @@ fn draw_level(
 
 /// Returns depth of the view's opaque and masked surfaces with one sample per texel, if a pass has drawn it
 /// ([`Slot::DEPTH`]).
-pub fn drawn_depth<W: ?Sized + 'static>(frame: &Frame<W>, handles: &Handles) -> Option<Texture> {
+pub fn drawn_depth<W: ?Sized>(frame: &Frame<W>, handles: &Handles) -> Option<Texture> {
     let (depth, graph) = (handles.find(Slot::DEPTH)?, frame.graph());
     let desc = graph.resources()[graph.resource_of(depth)?.index()].desc.texture()?;
     (desc.samples == 1).then_some(depth)

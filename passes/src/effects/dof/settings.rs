@@ -1,6 +1,9 @@
 //! Settings of depth of field.
 
 use crate::effects::depth::structure::Resolution;
+use crate::settings::field::{Field, choice, number};
+use crate::settings::place::{Place, flag, num, word};
+use crate::settings::table::SettingsTable;
 use framegraph_shaders::layout::Projection;
 
 /// Height of the film in meters: a 35 mm frame, as in Filament.
@@ -82,6 +85,43 @@ impl DofSettings {
     }
 }
 
+/// Range of numbers of rings.
+const RINGS: [f64; 2] = [3.0, 17.0];
+
+impl SettingsTable for DofSettings {
+    const OPTION: &'static str = "dof";
+    const PATH: &'static str = "settings.dof";
+    const ABOUT: &'static str = "depth of field";
+    const DEFAULT: Self = Self::DEFAULT;
+    const METHODS: &'static [(&'static str, Self)] = &[("on", Self::DEFAULT)];
+    const FIELDS: &'static [Field<Self>] = &[
+        number("focus", "focus_m", [1e-3, 1e9], |s: &mut Self| num(&mut s.focus_m))
+            .about("focus distance from the eye plane"),
+        number("aperture", "f_number", [0.1, 1e3], |s: &mut Self| num(&mut s.f_number))
+            .about("f-number: focal length over aperture diameter; more is sharper"),
+        number("focal", "focal_length_m", [1e-3, 10.0], |s: &mut Self| {
+            Place::Optional(&mut s.focal_length_m, "view", 0.028)
+        })
+        .about("focal length; `view` derives it from the field of view on 24 mm film"),
+        number("scale", "scale", [0.0, 1e3], |s: &mut Self| num(&mut s.scale)).about("factor on circles of confusion"),
+        choice("resolution", "resolution", |s: &mut Self| word(&mut s.resolution)).about("resolution of the gather"),
+        number("before", "most_before_px", [0.0, 32.0], |s: &mut Self| num(&mut s.most_before_px))
+            .about("maximum radius of foreground circles"),
+        number("behind", "most_behind_px", [0.0, 32.0], |s: &mut Self| num(&mut s.most_behind_px))
+            .about("maximum radius of background circles"),
+        number("rings-before", "rings_before", RINGS, |s: &mut Self| num(&mut s.rings_before))
+            .about("rings of foreground taps"),
+        number("rings-behind", "rings_behind", RINGS, |s: &mut Self| num(&mut s.rings_behind))
+            .about("rings of background taps"),
+        number("rings-even", "rings_even", RINGS, |s: &mut Self| num(&mut s.rings_even))
+            .about("rings in tiles with a single radius"),
+        choice("median", "median", |s: &mut Self| flag(&mut s.median))
+            .about("removes noise of the taps with a 3×3 median"),
+        choice("blended", "blended_after", |s: &mut Self| Place::Switch(&mut s.blended_after, ["before", "after"]))
+            .about("draws blended surfaces before or after the blur; after it, order-independent ones are sharp"),
+    ];
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,5 +156,16 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn the_table_describes_the_settings() {
+        crate::settings::table::test::<DofSettings>();
+        let text = "on:focus=2,focal=0.05,blended=after";
+        let expected =
+            DofSettings { focus_m: 2.0, focal_length_m: Some(0.05), blended_after: true, ..DofSettings::DEFAULT };
+        assert_eq!(DofSettings::from_text(text), Ok(Some(expected)));
+        let error = DofSettings::from_text("on:focal=0").expect_err("too short").to_string();
+        assert_eq!(error, "focal=0: expected `view` or a number from 0.001 to 10");
     }
 }

@@ -1,6 +1,7 @@
 //! Settings of ambient occlusion. Defaults and presets are Filament's unless stated.
 
 use crate::effects::depth::structure::Resolution;
+use crate::settings::place::Words;
 
 /// Method and filter of ambient occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,19 +140,6 @@ pub enum SaoQuality {
 }
 
 impl SaoQuality {
-    /// All presets.
-    pub const ALL: [Self; 4] = [Self::Low, Self::Medium, Self::High, Self::Ultra];
-
-    /// Returns the name used in options.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Low => "low",
-            Self::Medium => "medium",
-            Self::High => "high",
-            Self::Ultra => "ultra",
-        }
-    }
-
     /// Returns the method with its taps.
     pub const fn method(self) -> Method {
         let (taps, turns) = match self {
@@ -249,4 +237,9 @@ impl OcclusionSettings {
     pub const fn has_bent_normals(&self) -> bool {
         self.bent_normals && !matches!(self.method, Method::Gtao(Gtao { occluders: Occluders::Thick(_), .. }))
     }
+}
+
+impl Words for SaoQuality {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("low", Self::Low), ("medium", Self::Medium), ("high", Self::High), ("ultra", Self::Ultra)];
 }

@@ -1,6 +1,8 @@
-//! Settings of screen-space reflections, and option parsing. Defaults are Filament's.
+//! Settings of screen-space reflections, and their table. Defaults are Filament's.
 
-use crate::settings::key_value::{KeyValue, OptionError, switched};
+use crate::settings::field::{Field, number};
+use crate::settings::place::num;
+use crate::settings::table::SettingsTable;
 
 /// Settings of ray tracing in screen space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,34 +36,25 @@ impl ReflectionSettings {
         stride_texels: 2.0,
         most_roughness: std::f32::consts::FRAC_1_SQRT_2,
     };
+}
 
-    /// Names accepted by [`ReflectionSettings::set`].
-    pub const KEYS: [&str; 5] = ["thickness", "bias", "distance", "stride", "roughness"];
-
-    /// Parses `off`, or `on` with changes such as `on:thickness=0.2,distance=5`. Returns `None` for `off`.
-    ///
-    /// # Errors
-    /// Fails for another word, an unknown name or an invalid value; the message names it and the accepted values.
-    pub fn from_text(text: &str) -> Result<Option<Self>, OptionError> {
-        switched(text, Self::DEFAULT, Self::set)
-    }
-
-    /// Changes one setting by name.
-    ///
-    /// # Errors
-    /// Fails as [`ReflectionSettings::from_text`] does.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
-        let choice = KeyValue { key, value };
-        match key {
-            "thickness" => self.thickness_m = choice.number(0.0, 1e4)?,
-            "bias" => self.bias_m = choice.number(0.0, 100.0)?,
-            "distance" => self.reach_m = choice.number(1e-3, 1e5)?,
-            "stride" => self.stride_texels = choice.number(1.0, 64.0)?,
-            "roughness" => self.most_roughness = choice.number(0.0, 1.0)?,
-            _ => return Err(choice.unknown(&Self::KEYS)),
-        }
-        Ok(())
-    }
+impl SettingsTable for ReflectionSettings {
+    const OPTION: &'static str = "ssr";
+    const PATH: &'static str = "settings.reflections";
+    const ABOUT: &'static str = "screen-space reflections of the previous frame";
+    const DEFAULT: Self = Self::DEFAULT;
+    const METHODS: &'static [(&'static str, Self)] = &[("on", Self::DEFAULT)];
+    const FIELDS: &'static [Field<Self>] = &[
+        number("thickness", "thickness_m", [0.0, 1e4], |s: &mut Self| num(&mut s.thickness_m))
+            .about("thickness of surfaces"),
+        number("bias", "bias_m", [0.0, 100.0], |s: &mut Self| num(&mut s.bias_m))
+            .about("start of rays along their direction"),
+        number("distance", "reach_m", [1e-3, 1e5], |s: &mut Self| num(&mut s.reach_m)).about("maximum length of rays"),
+        number("stride", "stride_texels", [1.0, 64.0], |s: &mut Self| num(&mut s.stride_texels))
+            .about("step size; larger steps are faster and miss thin objects"),
+        number("roughness", "most_roughness", [0.0, 1.0], |s: &mut Self| num(&mut s.most_roughness))
+            .about("perceptual roughness at which reflections end"),
+    ];
 }
 
 #[cfg(test)]
@@ -69,30 +62,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), OptionError> {
-        assert_eq!(ReflectionSettings::from_text("off")?, None);
-        assert_eq!(ReflectionSettings::from_text("on")?, Some(ReflectionSettings::DEFAULT));
-        let own = "on:thickness=0.2,bias=0,distance=5,stride=4,roughness=0.5";
-        let expected =
-            ReflectionSettings { thickness_m: 0.2, bias_m: 0.0, reach_m: 5.0, stride_texels: 4.0, most_roughness: 0.5 };
-        assert_eq!(ReflectionSettings::from_text(own)?, Some(expected));
-        assert!(ReflectionSettings::KEYS.iter().all(|key| own.contains(&format!("{key}="))));
-        Ok(())
-    }
-
-    #[test]
-    fn wrong_words_are_named_in_one_line() {
-        for (text, named) in [
-            ("yes", "yes: "),
-            ("on:gloss=1", "gloss"),
-            ("on:thickness=-1", "thickness=-1"),
-            ("on:distance=0", "distance=0"),
-            ("on:stride=NaN", "stride=NaN"),
-            ("on:stride", "stride="),
-            ("on:roughness=2", "roughness=2"),
-        ] {
-            let told = ReflectionSettings::from_text(text).expect_err("that is no choice").to_string();
-            assert!(told.contains(named) && !told.contains('\n'), "{text}: {told}");
-        }
+    fn the_table_describes_the_settings() {
+        crate::settings::table::test::<ReflectionSettings>();
+        let expected = ReflectionSettings { thickness_m: 0.2, reach_m: 5.0, ..ReflectionSettings::DEFAULT };
+        assert_eq!(ReflectionSettings::from_text("on:thickness=0.2,distance=5"), Ok(Some(expected)));
+        let error = ReflectionSettings::from_text("on:stride=NaN").expect_err("not a number").to_string();
+        assert_eq!(error, "stride=NaN: expected a number from 1 to 64");
     }
 }

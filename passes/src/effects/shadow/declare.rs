@@ -6,6 +6,7 @@ use crate::gpu_scene::shadow_views::{MomentSettings, ShadowSettings};
 use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::{ViewId, Views};
 use crate::program::Programs;
+use crate::settings::place::Word;
 use crate::stages::Slot;
 use framegraph::{DeclareError, Texture};
 use framegraph_wgpu::Frame;
@@ -30,7 +31,7 @@ where
         let told = format_args!(
             "the settings ask for it: a layer for each of {cascades} cascades, {shared} for maps of other lights, {map_texels} \
              texels across, read by `{}`",
-            filter.name()
+            filter.word().unwrap_or_default()
         );
         frame.graph_mut().note("shadow", told);
     }

@@ -1,5 +1,6 @@
 //! Sub-pixel offsets of frames, and the filter of their samples to pixel centers.
 
+use crate::settings::place::Words;
 use glam::{DVec2, Vec4};
 
 /// Sequence of sub-pixel offsets.
@@ -22,21 +23,17 @@ pub enum JitterPattern {
 /// Skipped numbers of the Halton sequence: the mean of the following ones is closer to the center, as in Filament.
 const SKIPPED: u32 = 409;
 
+impl Words for JitterPattern {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("rgss4", Self::Rgss4),
+        ("helix4", Self::Helix4),
+        ("halton8", Self::Halton8),
+        ("halton16", Self::Halton16),
+        ("halton32", Self::Halton32),
+    ];
+}
+
 impl JitterPattern {
-    /// All sequences.
-    pub const ALL: [Self; 5] = [Self::Rgss4, Self::Helix4, Self::Halton8, Self::Halton16, Self::Halton32];
-
-    /// Returns the name used in options.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rgss4 => "rgss4",
-            Self::Helix4 => "helix4",
-            Self::Halton8 => "halton8",
-            Self::Halton16 => "halton16",
-            Self::Halton32 => "halton32",
-        }
-    }
-
     /// Returns the length of the sequence in frames.
     pub const fn length(self) -> u32 {
         match self {
@@ -96,7 +93,7 @@ mod tests {
     fn patterns_go_about_the_pixel() {
         assert_eq!([1, 2, 3].map(|index| halton(index, 2)), [0.5, 0.25, 0.75]);
         assert!((halton(5, 3) - 7.0 / 9.0).abs() < 1e-15);
-        for pattern in JitterPattern::ALL {
+        for (_, pattern) in JitterPattern::WORDS {
             let count = pattern.length();
             let places: Vec<DVec2> = (0..count).map(|frame| pattern.at(frame)).collect();
             assert_eq!(pattern.at(count + 1), places[1], "{pattern:?} begins anew");

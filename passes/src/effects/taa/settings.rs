@@ -1,7 +1,9 @@
-//! Settings of temporal anti-aliasing, and option parsing. Defaults are Filament's.
+//! Settings of temporal anti-aliasing, and their table. Defaults are Filament's.
 
 use super::jitter::JitterPattern;
-use crate::settings::key_value::{KeyValue, OptionError, switched};
+use crate::settings::field::{Field, choice, number};
+use crate::settings::place::{Words, flag, num, word};
+use crate::settings::table::SettingsTable;
 use glam::DVec2;
 
 /// Settings of temporal anti-aliasing.
@@ -88,78 +90,54 @@ impl TaaSettings {
         converge: false,
     };
 
-    /// Names accepted by [`TaaSettings::set`].
-    pub const KEYS: [&str; 13] = [
-        "feedback",
-        "width",
-        "sharpness",
-        "jitter",
-        "box",
-        "clip",
-        "gamma",
-        "filter-history",
-        "filter-input",
-        "ycocg",
-        "steady",
-        "reproject",
-        "converge",
-    ];
-
     /// Returns the offset of a frame to the right and up, in pixels.
     pub fn jitter_px(&self, frame: u32) -> DVec2 {
         self.jitter.at(frame)
     }
+}
 
-    /// Parses `off`, or `on` with changes such as `on:feedback=0.1,box=both`. Returns `None` for `off`.
-    ///
-    /// # Errors
-    /// Fails for another word, an unknown name or an invalid value; the message names it and the accepted values.
-    pub fn from_text(text: &str) -> Result<Option<Self>, OptionError> {
-        switched(text, Self::DEFAULT, Self::set)
-    }
+impl Words for ColorBox {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("bounds", Self::Bounds), ("variance", Self::Variance), ("both", Self::Both)];
+}
 
-    /// Changes one setting by name.
-    ///
-    /// # Errors
-    /// Fails as [`TaaSettings::from_text`] does.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<(), OptionError> {
-        let choice = KeyValue { key, value };
-        match key {
-            "feedback" => self.feedback = choice.number(0.0, 1.0)?,
-            "width" => self.filter_width = choice.number(0.5, 4.0)?,
-            "sharpness" => self.sharpness = choice.number(0.0, 1.0)?,
-            "jitter" => {
-                let found = JitterPattern::ALL.into_iter().find(|pattern| pattern.name() == value);
-                self.jitter =
-                    found.ok_or_else(|| choice.wrong("`rgss4`, `helix4`, `halton8`, `halton16` or `halton32`"))?;
-            }
-            "box" => {
-                self.color_box = match value {
-                    "bounds" => ColorBox::Bounds,
-                    "variance" => ColorBox::Variance,
-                    "both" => ColorBox::Both,
-                    _ => return Err(choice.wrong("`bounds`, `variance` or `both`")),
-                }
-            }
-            "clip" => {
-                self.clipping = match value {
-                    "accurate" => Clipping::Accurate,
-                    "clamp" => Clipping::Clamp,
-                    "none" => Clipping::None,
-                    _ => return Err(choice.wrong("`accurate`, `clamp` or `none`")),
-                }
-            }
-            "gamma" => self.variance_gamma = choice.number(0.0, 4.0)?,
-            "filter-history" => self.filter_history = choice.switch()?,
-            "filter-input" => self.filter_input = choice.switch()?,
-            "ycocg" => self.ycocg = choice.switch()?,
-            "steady" => self.prevent_flickering = choice.switch()?,
-            "reproject" => self.reproject = choice.switch()?,
-            "converge" => self.converge = choice.switch()?,
-            _ => return Err(choice.unknown(&Self::KEYS)),
-        }
-        Ok(())
-    }
+impl Words for Clipping {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("accurate", Self::Accurate), ("clamp", Self::Clamp), ("none", Self::None)];
+}
+
+impl SettingsTable for TaaSettings {
+    const OPTION: &'static str = "taa";
+    const PATH: &'static str = "settings.taa";
+    const ABOUT: &'static str = "temporal anti-aliasing";
+    const DEFAULT: Self = Self::DEFAULT;
+    const METHODS: &'static [(&'static str, Self)] = &[("on", Self::DEFAULT)];
+    const FIELDS: &'static [Field<Self>] = &[
+        number("feedback", "feedback", [0.0, 1.0], |s: &mut Self| num(&mut s.feedback))
+            .about("weight of each new frame"),
+        number("width", "filter_width", [0.5, 4.0], |s: &mut Self| num(&mut s.filter_width))
+            .about("width of the filter over a frame's own samples; 1 is sharper, 2 smoother"),
+        number("sharpness", "sharpness", [0.0, 1.0], |s: &mut Self| num(&mut s.sharpness))
+            .about("sharpening after accumulation"),
+        choice("jitter", "jitter", |s: &mut Self| word(&mut s.jitter)).about("sequence of sub-pixel offsets"),
+        choice("box", "color_box", |s: &mut Self| word(&mut s.color_box))
+            .about("color box to which the history is clamped"),
+        choice("clip", "clipping", |s: &mut Self| word(&mut s.clipping)).about("clamping method; `none` leaves ghosts"),
+        number("gamma", "variance_gamma", [0.0, 4.0], |s: &mut Self| num(&mut s.variance_gamma))
+            .about("half width of the variance box, in standard deviations"),
+        choice("filter-history", "filter_history", |s: &mut Self| flag(&mut s.filter_history))
+            .about("reads the history with a Catmull-Rom spline, which keeps moving detail sharp"),
+        choice("filter-input", "filter_input", |s: &mut Self| flag(&mut s.filter_input))
+            .about("filters a frame's samples to pixel centers"),
+        choice("ycocg", "ycocg", |s: &mut Self| flag(&mut s.ycocg))
+            .about("uses a box in luma and chroma, which is tighter"),
+        choice("steady", "prevent_flickering", |s: &mut Self| flag(&mut s.prevent_flickering))
+            .about("reduces the weight of a frame where brightness changes"),
+        choice("reproject", "reproject", |s: &mut Self| flag(&mut s.reproject))
+            .about("reads the history at the pixel's previous position"),
+        choice("converge", "converge", |s: &mut Self| flag(&mut s.converge))
+            .about("averages all frames while nothing moves"),
+    ];
 }
 
 #[cfg(test)]
@@ -167,46 +145,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), OptionError> {
-        assert_eq!(TaaSettings::from_text("off")?, None);
-        assert_eq!(TaaSettings::from_text("on")?, Some(TaaSettings::DEFAULT));
-        let own = "on:feedback=0.1,width=2,sharpness=0.5,jitter=rgss4,box=both,clip=clamp,gamma=1.25,filter-history=off,\
-                   filter-input=off,ycocg=on,steady=on,reproject=off,converge=on";
-        let expected = TaaSettings {
-            feedback: 0.1,
-            filter_width: 2.0,
-            sharpness: 0.5,
-            jitter: JitterPattern::Rgss4,
-            color_box: ColorBox::Both,
-            clipping: Clipping::Clamp,
-            variance_gamma: 1.25,
-            filter_history: false,
-            filter_input: false,
-            ycocg: true,
-            prevent_flickering: true,
-            reproject: false,
-            converge: true,
-        };
-        assert_eq!(TaaSettings::from_text(own)?, Some(expected));
-        assert!(TaaSettings::KEYS.iter().all(|key| own.contains(&format!("{key}="))));
-        Ok(())
-    }
-
-    #[test]
-    fn wrong_words_are_named_in_one_line() {
-        for (text, named) in [
-            ("yes", "yes: "),
-            ("on:gloss=1", "gloss"),
-            ("on:feedback=2", "feedback=2"),
-            ("on:feedback=NaN", "feedback=NaN"),
-            ("on:width=0", "width=0"),
-            ("on:jitter=white", "jitter=white"),
-            ("on:box=round", "box=round"),
-            ("on:clip=maybe", "clip=maybe"),
-            ("on:ycocg", "ycocg="),
-        ] {
-            let told = TaaSettings::from_text(text).expect_err("that is no choice").to_string();
-            assert!(told.contains(named) && !told.contains('\n'), "{text}: {told}");
-        }
+    fn the_table_describes_the_settings() {
+        crate::settings::table::test::<TaaSettings>();
+        let expected = TaaSettings { jitter: JitterPattern::Rgss4, clipping: Clipping::None, ..TaaSettings::DEFAULT };
+        assert_eq!(TaaSettings::from_text("on:jitter=rgss4,clip=none"), Ok(Some(expected)));
+        let error = TaaSettings::from_text("on:jitter=white").expect_err("no sequence").to_string();
+        assert_eq!(error, "jitter=white: expected `rgss4`, `helix4`, `halton8`, `halton16` or `halton32`");
     }
 }

@@ -1,4 +1,9 @@
-//! Techniques of transparency, and their settings.
+//! Techniques of transparency, their settings and the table of them.
+
+use crate::settings::field::{Field, choice, number};
+use crate::settings::key_value::OptionError;
+use crate::settings::place::{Place, Words, num, word};
+use crate::settings::table::{SettingsTable, method};
 
 /// Maximum number of peeled layers.
 pub const MAX_PEEL_LAYERS: u8 = 32;
@@ -26,6 +31,30 @@ pub enum Transparency {
 }
 
 impl Transparency {
+    /// Default number of layers for `peeled`.
+    pub const PEEL_LAYERS: u8 = 4;
+
+    /// Returns the technique's name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sorted => "sorted",
+            Self::TwoPasses => "two-passes",
+            Self::Weighted => "weighted",
+            Self::Moments(_) => "moments",
+            Self::Peeled { .. } => "peeled",
+        }
+    }
+
+    /// Parses a name, with optional changes after a colon: `moments:precision=full,overestimation=0.1`,
+    /// `peeled:layers=8`.
+    ///
+    /// # Errors
+    /// Fails for an unknown name or an invalid value; the message names it and the accepted values.
+    pub fn parse(text: &str) -> Result<Self, OptionError> {
+        method(text, &[])
+    }
+
     /// Returns true if the technique draws blended surfaces in separate passes, in any order.
     #[must_use]
     pub const fn is_unordered(self) -> bool {
@@ -76,5 +105,69 @@ impl Default for MomentTransparency {
     /// Returns [`MomentTransparency::DEFAULT`].
     fn default() -> Self {
         Self::DEFAULT
+    }
+}
+
+impl Words for MomentPrecision {
+    const WORDS: &'static [(&'static str, Self)] = &[("half", Self::Half), ("full", Self::Full)];
+}
+
+fn moments(s: &mut Transparency, place: fn(&mut MomentTransparency) -> Place<'_>) -> Place<'_> {
+    match s {
+        Transparency::Moments(own) => place(own),
+        _ => Place::Only("moments"),
+    }
+}
+
+impl SettingsTable for Transparency {
+    const OPTION: &'static str = "transparency";
+    const PATH: &'static str = "settings.transparency";
+    const ABOUT: &'static str = "order of blended surfaces";
+    const DEFAULT: Self = Self::Sorted;
+    const METHODS: &'static [(&'static str, Self)] = &[
+        ("sorted", Self::Sorted),
+        ("two-passes", Self::TwoPasses),
+        ("weighted", Self::Weighted),
+        ("moments", Self::Moments(MomentTransparency::DEFAULT)),
+        ("peeled", Self::Peeled { layers: Self::PEEL_LAYERS }),
+    ];
+    const FIELDS: &'static [Field<Self>] = &[
+        choice("precision", "precision", |s: &mut Self| moments(s, |m| word(&mut m.precision)))
+            .about("format of the moment sums"),
+        number("overestimation", "overestimation", [0.0, 1.0], |s: &mut Self| {
+            moments(s, |m| num(&mut m.overestimation))
+        })
+        .about("share of a surface's own absorbance that counts as in front of it"),
+        number("layers", "layers", [1.0, MAX_PEEL_LAYERS as f64], |s: &mut Self| match s {
+            Self::Peeled { layers } => num(layers),
+            _ => Place::Only("peeled"),
+        })
+        .about("number of peeled layers"),
+    ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn techniques_are_chosen_by_name() {
+        crate::settings::table::test::<Transparency>();
+        for (name, technique) in Transparency::METHODS {
+            assert_eq!((Transparency::parse(name), technique.name()), (Ok(*technique), *name));
+        }
+        let full = MomentTransparency { precision: MomentPrecision::Full, overestimation: 0.1 };
+        let text = "moments:precision=full,overestimation=0.1";
+        assert_eq!(Transparency::parse(text), Ok(Transparency::Moments(full)));
+        for (text, named) in [
+            ("off", "off: unknown choice; there are sorted"),
+            ("peeled:layers=0", "layers=0: expected a whole number from 1 to 32"),
+            ("weighted:layers=2", "only `peeled` has it"),
+            ("sorted:precision=half", "only `moments` has it"),
+            ("moments:precision=double", "`half` or `full`"),
+        ] {
+            let error = Transparency::parse(text).expect_err(text).to_string();
+            assert!(error.contains(named) && !error.contains('\n'), "{text}: {error}");
+        }
     }
 }

@@ -1,5 +1,8 @@
 //! Settings of upscaling.
 
+use crate::settings::field::{Field, choice, number};
+use crate::settings::place::{Words, num, word};
+use crate::settings::table::SettingsTable;
 use framegraph::Extent;
 
 /// Rendering at a lower resolution than displayed.
@@ -28,14 +31,10 @@ pub enum UpscaleFilter {
 impl UpscaleFilter {
     /// All filters.
     pub const ALL: [Self; 2] = [Self::Bilinear, Self::Fsr];
+}
 
-    /// Returns the name used in options.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bilinear => "bilinear",
-            Self::Fsr => "fsr",
-        }
-    }
+impl Words for UpscaleFilter {
+    const WORDS: &'static [(&'static str, Self)] = &[("bilinear", Self::Bilinear), ("fsr", Self::Fsr)];
 }
 
 impl Default for Upscale {
@@ -53,4 +52,19 @@ impl Upscale {
     pub const fn extent(&self) -> Extent {
         Extent::Relative { num: self.percent, den: 100, align: 1 }
     }
+}
+
+impl SettingsTable for Upscale {
+    const OPTION: &'static str = "";
+    const PATH: &'static str = "settings.upscale";
+    const ABOUT: &'static str = "rendering at a lower resolution (`--scale`)";
+    const DEFAULT: Self = Self::DEFAULT;
+    const METHODS: &'static [(&'static str, Self)] = &[("on", Self::DEFAULT)];
+    const FIELDS: &'static [Field<Self>] = &[
+        number("percent", "percent", [25.0, 100.0], |s: &mut Self| num(&mut s.percent))
+            .about("rendered width and height, in percent of the displayed size"),
+        choice("upscale", "filter", |s: &mut Self| word(&mut s.filter)).about("upscaling filter"),
+        number("sharpness", "sharpness", [0.0, 1.0], |s: &mut Self| num(&mut s.sharpness))
+            .about("sharpening after upscaling"),
+    ];
 }

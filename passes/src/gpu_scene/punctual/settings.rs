@@ -1,6 +1,9 @@
 //! Methods of finding punctual lights, by name: `auto`, `all`, `froxels`, `froxels:slices=24,far=200`.
 
-use crate::settings::key_value::{KeyValue, OptionError, choices};
+use crate::settings::field::{Field, number};
+use crate::settings::key_value::OptionError;
+use crate::settings::place::{Place, num};
+use crate::settings::table::{SettingsTable, method};
 
 /// Method of finding the punctual lights that reach a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,20 +36,6 @@ pub struct FroxelSettings {
 impl FroxelSettings {
     /// Default: 16×9 tiles in a 16:9 picture; 16 slices between 5 m and 100 m.
     pub const DEFAULT: Self = Self { tiles: 144, slices: 16, near_m: 5.0, far_m: 100.0 };
-
-    /// Keys of the settings.
-    pub const KEYS: [&str; 4] = ["tiles", "slices", "near", "far"];
-
-    fn set(&mut self, choice: KeyValue<'_>) -> Result<(), OptionError> {
-        match choice.key {
-            "tiles" => self.tiles = choice.whole(1, 4096)?,
-            "slices" => self.slices = choice.whole(1, 64)?,
-            "near" => self.near_m = choice.number(1e-3, 1e6)?,
-            "far" => self.far_m = choice.number(1e-3, 1e6)?,
-            _ => return Err(choice.unknown(&Self::KEYS)),
-        }
-        Ok(())
-    }
 }
 
 impl LightSearch {
@@ -57,32 +46,52 @@ impl LightSearch {
     ///
     /// # Errors
     /// Fails on an unknown method or key, or an invalid value, with a message that lists the valid ones.
-    pub fn from_text(text: &str) -> Result<Self, OptionError> {
-        let (way, changes) = text.split_once(':').unwrap_or((text, ""));
-        let mut settings = FroxelSettings::DEFAULT;
-        for choice in choices(changes) {
-            if way == "all" {
-                return Err(choice.only("froxels"));
+    pub fn parse(text: &str) -> Result<Self, OptionError> {
+        let found: Self = method(text, &[])?;
+        match found {
+            Self::Auto(own) | Self::Froxels(own) if own.near_m >= own.far_m => {
+                let (key, value, takes) = ("near".into(), own.near_m.to_string(), "less than `far`".into());
+                Err(OptionError::Value { key, value, takes })
             }
-            settings.set(choice)?;
-        }
-        let FroxelSettings { near_m, far_m, .. } = settings;
-        if near_m >= far_m {
-            return Err(KeyValue { key: "near", value: &near_m.to_string() }.wrong("less than `far`"));
-        }
-        match way {
-            "auto" => Ok(Self::Auto(settings)),
-            "froxels" => Ok(Self::Froxels(settings)),
-            "all" => Ok(Self::All),
-            _ => Err(KeyValue { key: way, value: "" }.unknown(&["auto", "froxels", "all"])),
+            _ => Ok(found),
         }
     }
+}
+
+fn froxels(s: &mut LightSearch, place: fn(&mut FroxelSettings) -> Place<'_>) -> Place<'_> {
+    match s {
+        LightSearch::Auto(own) | LightSearch::Froxels(own) => place(own),
+        LightSearch::All => Place::Only("froxels"),
+    }
+}
+
+impl SettingsTable for LightSearch {
+    const OPTION: &'static str = "lights";
+    const PATH: &'static str = "lights";
+    const ABOUT: &'static str =
+        "how shading finds punctual lights; `auto` is `froxels` for 4 or more lights of limited range";
+    const DEFAULT: Self = Self::Auto(FroxelSettings::DEFAULT);
+    const METHODS: &'static [(&'static str, Self)] = &[
+        ("auto", Self::Auto(FroxelSettings::DEFAULT)),
+        ("froxels", Self::Froxels(FroxelSettings::DEFAULT)),
+        ("all", Self::All),
+    ];
+    const FIELDS: &'static [Field<Self>] = &[
+        number("tiles", "tiles", [1.0, 4096.0], |s: &mut Self| froxels(s, |f| num(&mut f.tiles)))
+            .about("maximum number of tiles"),
+        number("slices", "slices", [1.0, 64.0], |s: &mut Self| froxels(s, |f| num(&mut f.slices)))
+            .about("number of depth slices"),
+        number("near", "near_m", [1e-3, 1e6], |s: &mut Self| froxels(s, |f| num(&mut f.near_m)))
+            .about("far end of the first slice"),
+        number("far", "far_m", [1e-3, 1e6], |s: &mut Self| froxels(s, |f| num(&mut f.far_m)))
+            .about("far end of the last slice"),
+    ];
 }
 
 impl Default for LightSearch {
     /// Returns [`LightSearch::Auto`].
     fn default() -> Self {
-        Self::Auto(FroxelSettings::DEFAULT)
+        Self::DEFAULT
     }
 }
 
@@ -91,27 +100,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn choices_are_made_by_name() -> Result<(), OptionError> {
-        assert_eq!(LightSearch::from_text("auto")?, LightSearch::default());
-        assert_eq!(LightSearch::from_text("all")?, LightSearch::All);
+    fn fields_are_set_by_name() {
+        crate::settings::table::test::<LightSearch>();
+        assert_eq!(LightSearch::parse("auto"), Ok(LightSearch::default()));
+        assert_eq!(LightSearch::parse("all"), Ok(LightSearch::All));
         let own = FroxelSettings { tiles: 512, slices: 24, near_m: 0.5, far_m: 200.0 };
-        let asked = LightSearch::from_text("froxels:tiles=512,slices=24,near=0.5,far=200")?;
-        assert_eq!(asked, LightSearch::Froxels(own));
-        for key in FroxelSettings::KEYS {
-            assert!(LightSearch::from_text(&format!("auto:{key}=6")).is_ok(), "{key}");
-        }
+        let asked = LightSearch::parse("froxels:tiles=512,slices=24,near=0.5,far=200");
+        assert_eq!(asked, Ok(LightSearch::Froxels(own)));
         for (wrong, named) in [
             ("tiled", "tiled: "),
             ("froxels:depth=2", "depth: "),
             ("froxels:slices=0", "slices=0: "),
             ("froxels:far=NaN", "far=NaN: "),
             ("froxels:near", "near=: "),
-            ("froxels:near=9,far=9", "near=9"),
-            ("all:slices=2", "slices: "),
+            ("froxels:near=9,far=9", "near=9: expected less than `far`"),
+            ("all:slices=2", "slices: only `froxels`"),
         ] {
-            let told = LightSearch::from_text(wrong).err().map(|error| error.to_string()).unwrap_or_default();
-            assert!(told.starts_with(named) && !told.contains('\n'), "{wrong}: {told}");
+            let error = LightSearch::parse(wrong).expect_err(wrong).to_string();
+            assert!(error.starts_with(named) && !error.contains('\n'), "{wrong}: {error}");
         }
-        Ok(())
     }
 }

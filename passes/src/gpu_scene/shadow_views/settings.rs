@@ -59,22 +59,6 @@ impl ShadowFilter {
     /// All filters.
     pub const ALL: [Self; 5] = [Self::Pcf, Self::Dpcf, Self::Pcss, Self::Vsm, Self::Evsm];
 
-    /// Returns the name used in options.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pcf => "pcf",
-            Self::Dpcf => "dpcf",
-            Self::Pcss => "pcss",
-            Self::Vsm => "vsm",
-            Self::Evsm => "evsm",
-        }
-    }
-
-    /// Returns the filter with this name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|filter| filter.name() == name)
-    }
-
     /// Returns the format of the moments; `None` for filters that read depth.
     pub const fn moments(self) -> Option<Format> {
         match self {

@@ -5,6 +5,7 @@
 
 use crate::{Outcome, adapter, no_words};
 use framegraph_passes::ReflectionSettings;
+use framegraph_passes::SettingsTable;
 use framegraph_passes::effects::depth::structure::Resolution;
 use glam::DVec3;
 use tests::measure::reflection::{Found, Stage};

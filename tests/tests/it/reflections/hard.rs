@@ -2,6 +2,7 @@
 
 use super::TestResult;
 use crate::stage::gpu;
+use framegraph_passes::SettingsTable;
 use framegraph_passes::effects::depth::structure::Resolution;
 use framegraph_passes::effects::reflection::ReflectionSettings;
 use framegraph_scene::Projection;

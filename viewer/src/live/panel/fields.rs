@@ -1,16 +1,11 @@
 //! Generic editor of settings fields: booleans as check boxes, numbers as drag values, variants as lists, other values as
 //! RON text.
 
-use crate::settings::{Node, about, alternatives, parse};
+use crate::settings::{Node, about, alternatives, parse, range};
 use egui::{Checkbox, ComboBox, DragValue, RichText, TextEdit, Ui};
-
-/// Numeric range: field, value, minimum and maximum.
-pub(super) type Range = (&'static str, f64, f64, f64);
 
 /// Editor of settings fields.
 pub(super) struct Fields<'a> {
-    /// Ranges of numeric fields.
-    pub ranges: &'a [Range],
     /// Search text that filters fields by name, including their children; empty shows all.
     pub search: &'a str,
 }
@@ -133,11 +128,10 @@ impl Fields<'_> {
             Ok(number) if number.is_finite() => {
                 let mut changed = number;
                 let mut drag = DragValue::new(&mut changed).max_decimals(if whole { 0 } else { 5 });
-                let range = self.ranges.iter().find(|(field, ..)| *field == path);
-                drag = match range {
-                    Some((_, _, low, high)) => {
+                drag = match range(path) {
+                    Some([low, high]) => {
                         let span = (high - low).min(100.0 * number.abs().max(0.01));
-                        drag.range(*low..=*high).speed(if whole { 0.1 } else { span / 400.0 })
+                        drag.range(low..=high).speed(if whole { 0.1 } else { span / 400.0 })
                     }
                     None => drag.speed(if whole { 0.1 } else { 0.01 * number.abs().max(0.05) }),
                 };

@@ -41,9 +41,7 @@ fn fields(panel: &mut SettingsPanel, ui: &mut Ui, live: &mut Live) {
     }
     let Some((_, node)) = &panel.tree else { return };
     let mut changed = node.clone();
-    let ranges = frame.ranges();
-    let ranges: Vec<_> = ranges.into_iter().collect();
-    Fields { ranges: &ranges, search: &panel.search }.children(ui, "", &mut changed);
+    Fields { search: &panel.search }.children(ui, "", &mut changed);
     if changed == *node {
         if !goes_on(ui.ctx()) {
             live.history.finish();

@@ -1,6 +1,7 @@
 //! Tables of the program.
 
 use framegraph_passes::Precision;
+use framegraph_passes::SettingsTable;
 use framegraph_passes::effects::occlusion::{Gtao, Method, Occluders, OcclusionSettings};
 use framegraph_scene::Projection;
 use framegraph_wgpu::Gpu;

@@ -12,7 +12,7 @@ const MAX_PAIRS: usize = 1 << 22;
 
 /// Returns the closest candidate to `name`. Its distance must be at most a third of the length, at most twelve, and
 /// less than the length.
-pub(super) fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     search(name, candidates).0
 }
 
