@@ -61,7 +61,7 @@ impl Bisecting {
         let options = DrawOptions { modes: Modes(mode.into_iter().collect()), ..self.options.clone() };
         running.restart();
         for _ in 0..FRAMES {
-            running.draw(self.size_px, &self.document, &options)?;
+            running.draw(self.size_px, &self.document, &options, &mut |_, _| ())?;
         }
         let texture = running.picture_texture().ok_or("the frame has no picture")?;
         let pixels = read_texture(&running.screen().gpu, texture).map_err(|e| e.to_string())?;

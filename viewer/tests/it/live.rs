@@ -35,6 +35,7 @@ pub fn viewer(screen: &Screen, document: Document, scene: &str) -> Viewer {
     assert!(live.running.is_some(), "{:?}", session.messages);
     live.options.forced = true;
     live.share = 0.1;
+    live.wait_for_frames();
     Viewer::with(session, live)
 }
 
@@ -108,6 +109,65 @@ fn an_effect_that_is_switched_off_is_not_drawn_and_undo_draws_it_again() {
     harness.run();
     settled(&mut harness);
     assert_eq!(plan(&harness).form.totals, now.form.totals);
+}
+
+/// The frame is planned whatever pane is visible.
+#[test]
+fn the_graph_follows_an_effect_while_the_viewport_is_hidden() {
+    let name = "the_graph_follows_an_effect_while_the_viewport_is_hidden";
+    let Some(mut harness) = harness(name, "columns") else { return };
+    let arrangement = harness.state().arrangement().expect("an arrangement");
+    // Viewport and graph stand side by side.
+    for label in ["viewport", "graph view"] {
+        assert!(harness.query_all_by_label(label).count() > 0, "{label}");
+    }
+    let before = plan(&harness);
+    // One container of tabs has every pane, so that only one is visible.
+    let state = harness.state_mut();
+    state.arrange_all_in_tabs();
+    state.turn_to(Pane::View(viewer::view::View::Graph));
+    harness.run();
+    assert_eq!(harness.query_all_by_label("settings").count(), 1, "only its tab");
+    let mut document = live(&mut harness).document().clone();
+    document.frame.settings.occlusion = None;
+    live(&mut harness).set(document, false);
+    harness.run();
+    let after = plan(&harness);
+    assert!(after.form.totals.passes < before.form.totals.passes, "the graph shows the frame without occlusion");
+    harness.state_mut().arrange(&arrangement);
+    harness.run();
+}
+
+/// Pipelines are created on another thread: the panels continue, show the progress, and *Stop* undoes the change.
+#[test]
+fn pipelines_do_not_block_the_panels() {
+    let name = "pipelines_do_not_block_the_panels";
+    let Some(mut harness) = harness(name, "columns") else { return };
+    live(&mut harness).draw_in_background();
+    let before = live(&mut harness).document().clone();
+    let mut document = before.clone();
+    document.frame.settings = Settings::with(document.frame.settings, Effect::Bloom);
+    document.frame.settings = Settings::with(document.frame.settings, Effect::Fog);
+    live(&mut harness).set(document, false);
+    let mut longest = Duration::ZERO;
+    let (mut compiled, mut stopped) = (false, false);
+    for _ in 0..2000 {
+        let begun = std::time::Instant::now();
+        harness.step();
+        longest = longest.max(begun.elapsed());
+        if live(&mut harness).doing().is_some_and(|(doing, _)| doing.contains("pipelines")) {
+            compiled = true;
+            if !std::mem::replace(&mut stopped, true) {
+                live(&mut harness).cancel();
+            }
+        } else if compiled && !live(&mut harness).wants_frame() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    println!("longest frame of the panels: {longest:?}");
+    assert!(compiled, "the frame has new pipelines");
+    assert_eq!(*live(&mut harness).document(), before, "the change is undone");
 }
 
 #[test]
@@ -265,6 +325,19 @@ fn settings_go_to_a_file_and_come_back() {
     harness.state_mut().open(&path, viewer::app::Role::Shown);
     harness.run();
     assert_eq!(*live(&mut harness).document(), document);
+    // Saving is confirmed, and the search finds names as they are displayed.
+    live(&mut harness).path = path.display().to_string();
+    harness.run();
+    harness.get_by_label("Save").click();
+    harness.run();
+    harness.get_by_label_contains("saved ");
+    live(&mut harness).settings.search = "LOD error px".into();
+    harness.run();
+    assert!(harness.query_all_by_label("lod error px").count() > 0);
+    assert_eq!(harness.query_all_by_label("quality").count(), 0);
+    live(&mut harness).settings.search = "no such field".into();
+    harness.run();
+    harness.get_by_label("no field matches `no such field`");
 }
 
 #[test]

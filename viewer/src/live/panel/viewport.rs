@@ -26,7 +26,7 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         live.again();
     }
     live.draw(size_px, session);
-    match live.running.as_ref().and_then(|running| running.picture()) {
+    match live.picture() {
         Some((id, _)) => {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter().image(id, rect, whole, Color32::WHITE);
@@ -50,7 +50,7 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         }
     }
     if live.wants_frame() {
-        ui.ctx().request_repaint();
+        ui.ctx().request_repaint_after(live.next_frame());
     }
 }
 
