@@ -30,6 +30,7 @@ use crate::history::History;
 use crate::job::Job;
 use crate::session::Session;
 use bisecting::Bisecting;
+use camera::Rig;
 use capture::{Document, Sun};
 use file_request::FileRequest;
 use frame::{DrawOptions, Running};
@@ -56,6 +57,8 @@ pub struct Live {
     wake: Arc<dyn Fn() + Send + Sync>,
     /// Running frame; `None` until the scene is loaded.
     pub running: Option<Running>,
+    /// Interactive camera; `None` until the scene is loaded.
+    pub rig: Option<Rig>,
     /// Settings and capture with undo and redo.
     pub history: History<Document>,
     /// Debug modes and animation state.
@@ -106,6 +109,7 @@ impl Live {
             screen,
             wake: Arc::new(wake),
             running: None,
+            rig: None,
             history: History::new(document),
             options: DrawOptions::default(),
             continuous: false,
@@ -236,7 +240,9 @@ impl Live {
                     self.material = None;
                     self.options.playing = false;
                     session.begin_document();
-                    (self.running, self.drawing) = (Some(Running::new(&self.screen, loaded)), self.drawing.restarted());
+                    let running = Running::new(&self.screen, loaded);
+                    (self.rig, self.drawing) = (Some(running.rig.clone()), self.drawing.restarted());
+                    self.running = Some(running);
                     self.reported_plans = 0;
                     warnings.into_iter().take(3).for_each(|warning| session.say(warning));
                     self.again();
@@ -264,7 +270,7 @@ impl Live {
         let end = Instant::now() + at_most;
         while Instant::now() < end {
             self.tick(session, 0.0);
-            if self.doing().is_none() {
+            if self.doing().is_none() && !self.drawing.is_working() {
                 return true;
             }
             std::thread::sleep(Duration::from_millis(2));

@@ -24,6 +24,7 @@ impl Viewer {
             let purpose = match asked {
                 FileRequest::Open => Purpose::Open(Role::Shown),
                 FileRequest::SaveSettings => Purpose::SaveSettings,
+                FileRequest::SaveTexture => Purpose::Texture,
             };
             self.dialog.ask(purpose, ui.ctx());
         }
@@ -50,6 +51,10 @@ impl Viewer {
             },
             Purpose::Export(view) => self.export(view, path, theme),
             Purpose::Trace => self.export_trace(path),
+            Purpose::Texture => match &self.live {
+                Some(live) => crate::live::preview::save(&live.preview, path, &live.read()),
+                None => return,
+            },
         };
         match done {
             Ok(()) => self.session.confirm(format!("saved {}", path.display())),

@@ -19,6 +19,8 @@ pub enum Purpose {
     Export(View),
     /// Exports frame times.
     Trace,
+    /// Saves the texture of the preview.
+    Texture,
 }
 
 impl Purpose {
@@ -35,6 +37,7 @@ impl Purpose {
             Self::SaveSettings => &[("settings", &["ron"])],
             Self::Export(_) => &[("a view", &["svg", "png", "txt"]), ("the plan", &["json", "ron", "dot", "mmd"])],
             Self::Trace => &[("frame times for Perfetto", &["json"])],
+            Self::Texture => &[("the picture", &["png"]), ("the values", &["exr"])],
         }
     }
 
@@ -45,6 +48,7 @@ impl Purpose {
             Self::SaveSettings => Some("settings.ron".into()),
             Self::Export(view) => Some(format!("{}.svg", view.word())),
             Self::Trace => Some("trace.json".into()),
+            Self::Texture => Some("texture.png".into()),
         }
     }
 }

@@ -57,7 +57,7 @@ impl Pane {
 /// Returns the default arrangement.
 ///
 /// Search and what-if are on the left, views as tabs in the center, the inspector on the right. With a live frame, its
-/// settings are on the left, the frame and the views side by side in the center, and its textures on the right.
+/// settings are on the left, and the frame stands beside the views, which are above the inspector.
 pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let views = View::ALL.into_iter().filter(|view| *view != View::Inspector).map(Pane::View);
@@ -74,7 +74,8 @@ pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let inspector = tabs([Pane::View(View::Inspector)].into_iter().chain(beside).collect());
     let columns = if live {
         let viewport = tabs(vec![Pane::Viewport]);
-        vec![(left, 1.1), (viewport, 1.4), (middle, 1.4), (inspector, 1.0)]
+        let stacked = tiles.insert_vertical_tile(vec![middle, inspector]);
+        vec![(left, 1.1), (viewport, 1.9), (stacked, 1.9)]
     } else {
         vec![(left, 0.98), (middle, 2.6), (inspector, 1.0)]
     };

@@ -3,12 +3,15 @@
 //! A frame is drawn by a thread of its own, because creating its pipelines may take seconds. The panels wait for it for
 //! some milliseconds. If it takes longer, they show the last picture and the progress.
 
+use super::bisecting::Bisecting;
 use super::frame::Running;
+use super::preview::{Found, read};
 use super::{Live, times};
-use crate::job::Job;
+use crate::job::{Handle, Job};
 use crate::plan_data::PlanData;
 use crate::session::Session;
 use egui::TextureId;
+use framegraph_wgpu::inspect::Inspector;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -21,14 +24,27 @@ const BUSY: Duration = Duration::from_millis(5);
 /// Size of the frame before the viewport was first shown.
 const SIZE_PX: [u32; 2] = [1280, 720];
 
-/// Work that returns the frame with the result of drawing it.
-type Work = Job<(Running, Result<(), String>)>;
+/// Time after which work on a frame is shown with its progress.
+const LONG: Duration = Duration::from_millis(150);
+
+/// Result of work on the frame.
+enum Done {
+    /// It was drawn.
+    Drawn(Result<(), String>),
+    /// A texture was read.
+    Read(Box<Inspector>, Result<Found, String>),
+    /// Debug modes were compared.
+    Bisected(Result<Bisecting, String>),
+}
+
+/// Work that returns the frame with the result.
+type Work = Job<(Running, Done)>;
 
 /// State of drawing.
 #[derive(Default)]
 pub(super) struct Drawing {
-    /// The frame while another thread draws it.
-    job: Option<Work>,
+    /// The frame while another thread works on it, and when that began.
+    job: Option<(Work, Instant)>,
     /// Last picture: egui's id and the size in pixels.
     picture: Option<(TextureId, [u32; 2])>,
     /// The viewport was shown since the last frame of the window.
@@ -42,12 +58,21 @@ pub(super) struct Drawing {
 impl Drawing {
     /// Returns the description and progress of a frame that takes long.
     pub fn doing(&self) -> Option<(&str, Option<f32>)> {
-        self.job.as_ref().map(|job| (job.doing.as_str(), job.progress()))
+        let (job, _) = self.job.as_ref().filter(|(_, begun)| begun.elapsed() > LONG)?;
+        Some((job.doing.as_str(), job.progress()))
     }
 
-    /// Undoes the last change of settings after the running frame.
+    /// Returns whether another thread works on the frame.
+    pub fn is_working(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// Ends the work on the frame. If it creates pipelines, the last change of settings is undone afterward.
     pub fn stop(&mut self) {
-        self.stopped = self.job.is_some();
+        if let Some((job, _)) = &self.job {
+            job.cancel();
+            self.stopped = true;
+        }
     }
 
     /// Returns the state for another scene. A frame of the old scene that is still drawn is dropped.
@@ -60,6 +85,11 @@ impl Live {
     /// Waits for every frame, as tests and pictures need.
     pub fn wait_for_frames(&mut self) {
         self.drawing.blocking = true;
+    }
+
+    /// Returns whether every frame is waited for.
+    pub fn is_blocking(&self) -> bool {
+        self.drawing.blocking
     }
 
     /// Draws frames on another thread, as windows need; the default.
@@ -104,60 +134,108 @@ impl Live {
         if !self.wants_frame() || size_px.contains(&0) {
             return;
         }
-        let Some(mut running) = self.running.take() else { return };
+        let Some(running) = &mut self.running else { return };
         if !self.drawing.blocking && running.is_busy() {
-            self.running = Some(running);
             return;
         }
-        self.left = self.left.saturating_sub(1);
+        if let Some(rig) = &self.rig {
+            running.rig.clone_from(rig);
+        }
         // Until new light is available, draw with the existing light.
-        let mut drawn = self.document().clone();
         let lit = running.loaded.light_settings;
+        let mut drawn = self.document().clone();
         drawn.frame.settings.shading.bands = lit.image.bands;
         drawn.frame.settings.shading.table = lit.dfg.visibility;
+        self.left = self.left.saturating_sub(1);
         let options = self.options.clone();
+        self.work("compiling pipelines", session, move |running, handle| {
+            let mut progress = |done, total| handle.step(done, total);
+            Done::Drawn(running.draw(size_px, &drawn, &options, &mut progress))
+        });
+    }
+
+    /// Reads the texture of the preview if its selection, or with *live* the frame, changed.
+    pub fn inspect(&mut self, session: &mut Session) {
+        let Some(running) = &self.running else { return };
+        let frame = running.plans() ^ (u64::from(running.drawn()) << 20);
+        let Some((target, inspector)) = self.preview.begin(running, frame) else { return };
+        let mut inspector = Box::new(inspector);
+        self.work("reading a texture", session, move |running, _| {
+            let found = read(running, &mut inspector, target);
+            Done::Read(inspector, found)
+        });
+    }
+
+    /// Draws the frame in each debug mode and compares the pictures.
+    pub fn bisect(&mut self, mut bisecting: Bisecting, session: &mut Session) {
+        self.bisecting = None;
+        self.work("comparing debug modes", session, move |running, handle| {
+            Done::Bisected(bisecting.run(running, handle).map(|()| bisecting))
+        });
+    }
+
+    /// Lends the frame to another thread and waits for a moment; with [`Live::wait_for_frames`], works on this thread.
+    fn work(
+        &mut self,
+        doing: &str,
+        session: &mut Session,
+        work: impl FnOnce(&mut Running, &Handle) -> Done + Send + 'static,
+    ) {
+        let Some(mut running) = self.running.take() else { return };
         if self.drawing.blocking {
-            let result = running.draw(size_px, &drawn, &options, &mut |_, _| ());
-            return self.take_drawn(running, result, session);
+            let done = work(&mut running, &Handle::default());
+            return self.take_done(running, done, session);
         }
         let wake = self.wake.clone();
         let job = Job::start(
-            "compiling pipelines",
+            doing,
             move || wake(),
             move |handle| {
-                let mut progress = |done, total| handle.step(done, total);
-                let result = running.draw(size_px, &drawn, &options, &mut progress);
-                (running, result)
+                let done = work(&mut running, handle);
+                (running, done)
             },
         );
-        self.drawing.job = Some(job);
+        self.drawing.job = Some((job, Instant::now()));
         self.collect(session, PATIENCE);
     }
 
-    /// Takes the frame back from the thread that draws it. Waits at most the given time.
+    /// Takes the frame back from the thread that works on it. Waits at most the given time.
     pub(super) fn collect(&mut self, session: &mut Session, at_most: Duration) {
-        let Some(job) = &self.drawing.job else { return };
-        if let Some((running, result)) = job.wait(at_most) {
+        let Some((job, _)) = &self.drawing.job else { return };
+        if let Some((running, done)) = job.wait(at_most) {
             self.drawing.job = None;
-            self.take_drawn(running, result, session);
+            self.take_done(running, done, session);
         }
     }
 
-    fn take_drawn(&mut self, running: Running, result: Result<(), String>, session: &mut Session) {
+    fn take_done(&mut self, running: Running, done: Done, session: &mut Session) {
         self.drawing.picture = running.picture();
         self.running = Some(running);
-        if std::mem::replace(&mut self.drawing.stopped, false) && self.history.undo() {
-            self.again();
-        }
-        if let Err(error) = result {
-            if self.refused.as_ref() != Some(&error) {
-                session.say(error.clone());
+        let stopped = std::mem::replace(&mut self.drawing.stopped, false);
+        match done {
+            Done::Drawn(result) => {
+                if stopped && self.history.undo() {
+                    self.again();
+                }
+                if let Err(error) = result {
+                    if self.refused.as_ref() != Some(&error) {
+                        session.say(error.clone());
+                    }
+                    (self.refused, self.left) = (Some(error), 0);
+                    return;
+                }
+                self.clock.tick(Instant::now());
+                self.report(session);
             }
-            (self.refused, self.left) = (Some(error), 0);
-            return;
+            Done::Read(inspector, found) => self.preview.take(*inspector, found),
+            Done::Bisected(result) => {
+                match result {
+                    Ok(bisecting) => self.bisecting = Some(bisecting).filter(Bisecting::is_done),
+                    Err(error) => session.say(error),
+                }
+                self.again();
+            }
         }
-        self.clock.tick(Instant::now());
-        self.report(session);
     }
 
     /// Passes plan and times to the session if it shows this frame.
