@@ -3,6 +3,7 @@
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::{Decision, Reason, Refusal, Subject};
 use crate::graph::{PassFlags, PassKind};
+use crate::id::{PassId, ResourceId};
 use crate::plan::Plan;
 
 impl Plan {
@@ -29,6 +30,17 @@ impl Plan {
                     "use a device that supports it"
                 }
             }
+            (Reason::Split(writer, Refusal::SampledElsewhere), Subject::Pass(reader)) => {
+                let step = self.pass_steps()[writer.index()];
+                let written = |resource| {
+                    let attached = step.some().map(|step| self.attachments_of(step)).unwrap_or_default();
+                    attached.iter().any(|a| a.resource == resource)
+                };
+                let mut sampled = graph.accesses_of(reader).iter().filter(|a| a.kind == AccessKind::Sampled);
+                let possible = sampled.any(|a| written(a.resource) && self.fits_pixels(reader, a.resource));
+                if possible { general } else { "" }
+            }
+            (Reason::StoreReadBy(reader), Subject::Store(_, resource)) if !self.fits_pixels(reader, resource) => "",
             (Reason::StoreReadBy(reader), Subject::Store(_, resource)) => {
                 let reads = |a: &&Access| a.resource == resource && a.mode == Mode::Read;
                 let mut reads = graph.accesses_of(reader).iter().filter(reads).map(|a| a.kind).peekable();
@@ -44,6 +56,17 @@ impl Plan {
             }
             _ => general,
         }
+    }
+
+    /// Returns whether a raster pass could read a texture at the same pixel: the texture has the size and the layers of
+    /// its attachments. True for passes of other kinds, which no size excludes.
+    fn fits_pixels(&self, reader: PassId, resource: ResourceId) -> bool {
+        let Some(step) = self.pass_steps()[reader.index()].some().map(|step| &self.steps()[step.index()]) else {
+            return true;
+        };
+        let Some(texture) = self.graph().resources()[resource.index()].desc.texture() else { return true };
+        let extent = texture.mip_extent(self.frame(), 0);
+        step.kind != PassKind::Raster || extent == step.extent && u32::from(texture.layers) == u32::from(step.layers)
     }
 
     /// Returns the decision as a sentence with names. For passes that were not merged or inlined, appends a hint.

@@ -4,6 +4,7 @@
 mod chosen;
 #[cfg(feature = "window")]
 pub mod dialog;
+mod drawings;
 #[cfg(feature = "window")]
 mod export;
 mod panes;
@@ -14,16 +15,12 @@ pub use crate::session::{Role, Session};
 pub use panes::Pane;
 pub use shortcuts::SHORTCUTS;
 
-use crate::drawing::{Drawing, Item};
+use crate::drawing::Item;
 use crate::panel::{self, Canvas, List};
-use crate::plan_data::PlanData;
-use crate::view::{self, View, ViewContext};
+use crate::view::{self, View};
 use egui::{Context, Panel, RichText, Ui};
 use egui_tiles::Tree;
 use std::collections::BTreeMap;
-
-/// Characters per line in the inspector.
-const LETTERS: usize = 100;
 
 /// The application without its window, which an engine can embed in its own egui UI.
 pub struct Viewer {
@@ -36,8 +33,9 @@ pub struct Viewer {
     /// Pan and zoom of each view.
     canvases: BTreeMap<View, Canvas>,
     /// Cached drawings of the views.
-    drawings: BTreeMap<View, Drawing>,
-    drawn: [u64; 2],
+    drawings: drawings::Drawings,
+    /// Document to which zoom and search belong.
+    document: u64,
     /// Comparison picture of an accuracy choice.
     strip: strip::Strip,
     /// Live frame.
@@ -49,8 +47,12 @@ pub struct Viewer {
     /// Typed paths of a scene, an environment, and an export file.
     #[cfg(feature = "window")]
     typed: ([String; 2], String),
+    /// Recently opened files, newest first.
+    pub recent: Vec<std::path::PathBuf>,
     /// Typed path of the file to open or to compare with.
     path: String,
+    /// Focuses the field of the path in the next frame.
+    focus_path: bool,
     /// Shows the list of shortcuts.
     help: bool,
 }
@@ -63,8 +65,8 @@ impl Viewer {
             tiles: panes::arranged(false),
             list: List::default(),
             canvases: BTreeMap::new(),
-            drawings: BTreeMap::new(),
-            drawn: [0; 2],
+            drawings: drawings::Drawings::default(),
+            document: 0,
             strip: strip::Strip::default(),
             #[cfg(feature = "window")]
             live: None,
@@ -72,7 +74,9 @@ impl Viewer {
             dialog: dialog::Dialog::default(),
             #[cfg(feature = "window")]
             typed: Default::default(),
+            recent: Vec::new(),
             path: String::new(),
+            focus_path: false,
             help: false,
         }
     }
@@ -108,7 +112,7 @@ impl Viewer {
             self.act(action);
         }
         Panel::top("bar").show(ui, |ui| self.bar(ui));
-        if !self.session.messages.is_empty() {
+        if !self.session.messages.is_empty() || self.session.notice.is_some() {
             Panel::top("messages").show(ui, |ui| self.messages(ui));
         }
         let Self { session, tiles, list, canvases, drawings, strip, .. } = self;
@@ -129,8 +133,13 @@ impl Viewer {
         if self.help {
             self.help = shortcuts::list(ui.ctx());
         }
-        // Apply changes from the panes in the next frame.
-        self.refresh();
+        // A frame without a visible viewport is drawn too, because all views show its plan.
+        #[cfg(feature = "window")]
+        if let Some(live) = &mut self.live
+            && live.draw_hidden(&mut self.session)
+        {
+            ui.ctx().request_repaint_after(live.next_frame());
+        }
     }
 
     /// Brings a pane to the front of its tabs.
@@ -138,20 +147,24 @@ impl Viewer {
         self.tiles.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(this) if *this == pane));
     }
 
-    /// Selects an item and pans all views to it.
+    /// Selects an item. All views pan to it.
     pub fn select(&mut self, item: Option<Item>) {
         self.session.selected = item;
-        panes::reveal(&mut self.canvases, &self.drawings, &self.session.lit());
     }
 
     /// Returns the screen position of an item in a view; `None` if it is not visible.
     pub fn place_of(&self, view: View, item: Item) -> Option<egui::Pos2> {
-        self.canvases.get(&view)?.place_of(self.drawings.get(&view)?, item)
+        self.canvases.get(&view)?.place_of(self.drawings.existing(view)?, item)
     }
 
     /// Returns the arrangement of the panes as text for [`Viewer::arrange`].
     pub fn arrangement(&self) -> Option<String> {
         serde_json::to_string(&self.tiles).ok()
+    }
+
+    /// Arranges all panes in one container of tabs.
+    pub fn arrange_all_in_tabs(&mut self) {
+        self.tiles = panes::in_tabs(self.is_live());
     }
 
     /// Restores an arrangement of the panes. Invalid text changes nothing.
@@ -163,25 +176,13 @@ impl Viewer {
         }
     }
 
-    /// Redraws changed views.
+    /// Drops outdated drawings, and after another file was opened, zoom and search.
     fn refresh(&mut self) {
-        let drawn = [self.session.generation(), self.session.times()];
-        if self.drawn == drawn && !self.drawings.is_empty() {
-            return;
+        if std::mem::replace(&mut self.document, self.session.documents()) != self.session.documents() {
+            self.canvases.clear();
+            self.list.search.clear();
         }
-        // If only times changed, views without times keep their drawings.
-        let only_times = self.drawn[0] == drawn[0] && !self.drawings.is_empty();
-        self.drawn = drawn;
-        let timed = |view: &View| matches!(view, View::Timeline | View::Trace | View::Queues);
-        self.drawings.retain(|view, _| only_times && !timed(view));
-        let none = PlanData::default();
-        let plan = self.session.plan.as_deref();
-        let beside = ViewContext { selected: None, ..self.session.context() };
-        let all = View::ALL.into_iter().filter(|view| *view != View::Inspector);
-        for view in all.filter(|view| plan.is_some() || !view.is_of_a_plan()) {
-            let make = || view::drawing(view, plan.unwrap_or(&none), beside, LETTERS);
-            self.drawings.entry(view).or_insert_with(make);
-        }
+        self.drawings.refresh(&self.session);
     }
 
     /// Executes the action of a shortcut.
@@ -220,6 +221,7 @@ impl Viewer {
 
     /// Opens a file of any supported kind. Scenes, environments and settings go to the live frame.
     pub fn open(&mut self, path: &std::path::Path, role: Role) {
+        crate::remembered::add_recent(&mut self.recent, path);
         #[cfg(feature = "window")]
         if let Some(live) = &mut self.live
             && role == Role::Shown
@@ -235,6 +237,9 @@ impl Viewer {
             ui.label(RichText::new("viewer").strong());
             let hint = "PLAN.json, FRAME.ron or TRACE.json";
             let edit = ui.add(egui::TextEdit::singleline(&mut self.path).hint_text(hint).desired_width(220.0));
+            if std::mem::take(&mut self.focus_path) {
+                edit.request_focus();
+            }
             let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let tip = "Open the file. Files can also be dropped onto the window";
             let open = ui.button("Open").on_hover_text(tip).clicked() || enter;
@@ -248,6 +253,15 @@ impl Viewer {
             for (name, role) in [("Open…", Role::Shown), ("Compare with…", Role::Against)] {
                 self.ask_button(ui, name, dialog::Purpose::Open(role));
             }
+            ui.add_enabled_ui(!self.recent.is_empty(), |ui| {
+                let chosen = ui.menu_button("Recent", |ui| {
+                    let mut shown = |path: &std::path::PathBuf| ui.button(path.display().to_string()).clicked();
+                    self.recent.iter().filter(|path| shown(path)).cloned().last()
+                });
+                if let Some(path) = chosen.inner.flatten() {
+                    self.open(&path, Role::Shown);
+                }
+            });
             if self.session.has_against() && ui.button("Stop comparing").clicked() {
                 self.session.forget_against();
             }
@@ -306,6 +320,14 @@ impl Viewer {
         }
         if let Some(index) = closed {
             self.session.messages.remove(index);
+        }
+        if let Some(notice) = self.session.notice.clone() {
+            ui.horizontal_top(|ui| {
+                if ui.small_button("Close").clicked() {
+                    self.session.notice = None;
+                }
+                ui.add(egui::Label::new(notice).wrap());
+            });
         }
     }
 }

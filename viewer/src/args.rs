@@ -35,9 +35,9 @@ FILE is a plan (JSON, docs/reference/plan-json.md), a graph (FRAME.ron, docs/ref
                       enable or disable a feature of the graph; repeatable
   --order ORDER       declared (default) or optimized
   --select NAME       select a pass or a resource
-  --view VIEW         graph (default), timeline, memory, bandwidth, inspector, diff, trace,
-                      accuracy or queues
-  --theme THEME       light or dark; default: that of the desktop, light without a window
+  --view VIEW         graph, timeline, memory, bandwidth, inspector, diff, trace, accuracy or queues; default: the
+                      last one, graph without a window
+  --theme THEME       light or dark; default: the last one, else that of the desktop; light without a window
   --scale X           pixels per point, 0.5 to 4 (1)
   --headless          write --out without opening a window
   --out FILE          output of --headless, .png or .svg
@@ -79,8 +79,8 @@ pub struct Args {
     pub order: Order,
     /// Name of the selected pass or resource.
     pub select: Option<String>,
-    /// View in front.
-    pub view: View,
+    /// View in front; `None` for the remembered one, without a window the graph.
+    pub view: Option<View>,
     /// Theme; `None` follows the desktop.
     pub theme: Option<Theme>,
     /// Pixels per point.
@@ -114,7 +114,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
         features: Vec::new(),
         order: Order::Declared,
         select: None,
-        view: View::Graph,
+        view: None,
         theme: None,
         scale: 1.0,
         out: None,
@@ -167,7 +167,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
     if !out.live && (out.settings.is_some() || out.environment.is_some()) {
         return Err("--settings, --environment: require --live".into());
     }
-    if headless && out.file.is_none() && out.standard.is_none() && out.view.is_of_a_plan() {
+    if headless && out.file.is_none() && out.standard.is_none() && out.view.unwrap_or(View::Graph).is_of_a_plan() {
         return Err("--headless: requires a file; add --plan FILE".into());
     }
     Ok(Some(out))
@@ -230,7 +230,7 @@ fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String
         "view" => {
             let views = View::ALL.map(View::word).join(", ");
             let named = View::ALL.into_iter().find(|view| view.word() == value);
-            out.view = named.ok_or_else(|| wrong(&format!("one of {views}")))?;
+            out.view = Some(named.ok_or_else(|| wrong(&format!("one of {views}")))?);
         }
         "theme" => {
             out.theme = match value.as_str() {
@@ -286,7 +286,7 @@ mod tests {
                     --whole";
         let args = parsed(line).expect("the line is sound").expect("no help is asked for");
         assert_eq!((args.file, args.against), (Some("a.json".into()), Some("b.ron".into())));
-        assert_eq!((args.view, args.theme, args.scale), (View::Memory, Some(Theme::Dark), 2.0));
+        assert_eq!((args.view, args.theme, args.scale), (Some(View::Memory), Some(Theme::Dark), 2.0));
         assert_eq!((args.size, args.picture, args.whole), (Some([64, 32]), Some([640, 360]), true));
         assert_eq!((args.features, args.order), (vec![("msaa".into(), true)], Order::Optimized));
         assert_eq!(parsed("--help --capz"), Ok(None));

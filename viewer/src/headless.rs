@@ -8,7 +8,7 @@ use viewer::app::{Pane, Session, Viewer};
 use viewer::drawing::svg;
 use viewer::offscreen::{Offscreen, own_size_px};
 use viewer::plan_data::PlanData;
-use viewer::view::drawing;
+use viewer::view::{View, drawing};
 
 /// Default size of the whole application in pixels.
 const WHOLE: [u32; 2] = [1280, 720];
@@ -47,7 +47,7 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
 fn picture(args: &Args, session: &Session) -> viewer::drawing::Drawing {
     let empty = PlanData::default();
     let plan = session.plan.as_deref().unwrap_or(&empty);
-    drawing(args.view, plan, session.context(), LETTERS)
+    drawing(args.view.unwrap_or(View::Graph), plan, session.context(), LETTERS)
 }
 
 fn of_view(args: &Args, session: &Session) -> String {
@@ -60,7 +60,7 @@ fn png(args: &Args, session: Session) -> Result<Vec<u8>, Failure> {
     let (size, rgba) = if args.whole {
         let size = args.picture.unwrap_or(WHOLE);
         let mut viewer = Viewer::new(session);
-        viewer.turn_to(Pane::View(args.view));
+        viewer.turn_to(Pane::View(args.view.unwrap_or(View::Graph)));
         let item = viewer.session.selected;
         let rgba = screen.picture(size, args.scale, theme, |ui| {
             viewer.show(ui);

@@ -63,6 +63,11 @@ impl<T: Send + 'static> Job<T> {
         }
     }
 
+    /// Asks the work to end early. Its result is still available.
+    pub fn cancel(&self) {
+        self.handle.cancelled.store(true, Ordering::Relaxed);
+    }
+
     /// Waits for the result, at most the given time.
     pub fn wait(&self, at_most: Duration) -> Option<T> {
         self.result.recv_timeout(at_most).ok()

@@ -12,6 +12,7 @@
 pub mod accuracy_data;
 pub mod app;
 pub mod drawing;
+pub mod editor;
 mod file_bytes;
 pub mod glossary;
 pub mod graph_source;
@@ -27,6 +28,7 @@ pub mod offscreen;
 pub mod open;
 pub mod panel;
 pub mod plan_data;
+pub mod remembered;
 mod session;
 pub mod settings;
 pub mod standard_frame;

@@ -7,6 +7,7 @@
 //! | `capture.rs`, `factors.rs`, `camera.rs` | exposure, lens, light and animation; edited materials; the interactive camera |
 //! | `frame.rs` | the frame, executed repeatedly |
 //! | `settings_panel.rs`, `file_request.rs` | state of the settings panel; file dialogs that panels request |
+//! | `drawing.rs` | when and on which thread frames are drawn |
 //! | `times.rs` | frame times for the views |
 //! | `preview.rs`, `bisecting.rs` | contents of textures; bisection of debug modes |
 //! | `panel/` | the panels |
@@ -14,6 +15,7 @@
 pub mod bisecting;
 pub mod camera;
 pub mod capture;
+mod drawing;
 pub mod factors;
 pub mod file_request;
 pub mod frame;
@@ -26,9 +28,9 @@ mod times;
 
 use crate::history::History;
 use crate::job::Job;
-use crate::plan_data::PlanData;
 use crate::session::Session;
 use bisecting::Bisecting;
+use camera::Rig;
 use capture::{Document, Sun};
 use file_request::FileRequest;
 use frame::{DrawOptions, Running};
@@ -45,8 +47,6 @@ use std::time::{Duration, Instant};
 const AFTER_CHANGE: u32 = 16;
 /// Frames drawn after a change with temporal anti-aliasing.
 const AFTER_CHANGE_TAA: u32 = 48;
-/// Interval between two updates of the times, in seconds.
-const TIMES_S: f32 = 0.5;
 
 /// Result of a job.
 type JobResult<T> = Result<T, String>;
@@ -57,6 +57,8 @@ pub struct Live {
     wake: Arc<dyn Fn() + Send + Sync>,
     /// Running frame; `None` until the scene is loaded.
     pub running: Option<Running>,
+    /// Interactive camera; `None` until the scene is loaded.
+    pub rig: Option<Rig>,
     /// Settings and capture with undo and redo.
     pub history: History<Document>,
     /// Debug modes and animation state.
@@ -90,6 +92,7 @@ pub struct Live {
     times_at: Option<Instant>,
     clock: times::Clock,
     size_px: [u32; 2],
+    drawing: drawing::Drawing,
 }
 
 impl Live {
@@ -106,6 +109,7 @@ impl Live {
             screen,
             wake: Arc::new(wake),
             running: None,
+            rig: None,
             history: History::new(document),
             options: DrawOptions::default(),
             continuous: false,
@@ -127,6 +131,7 @@ impl Live {
             times_at: None,
             clock: times::Clock::default(),
             size_px: [0; 2],
+            drawing: drawing::Drawing::default(),
         };
         live.load(scene);
         live
@@ -194,11 +199,16 @@ impl Live {
     /// Returns the description and progress of the background work.
     pub fn doing(&self) -> Option<(&str, Option<f32>)> {
         let loading = self.loading.as_ref().map(|job| (job.doing.as_str(), job.progress()));
-        loading.or(self.relighting.as_ref().map(|job| (job.doing.as_str(), job.progress())))
+        let relighting = || self.relighting.as_ref().map(|job| (job.doing.as_str(), job.progress()));
+        loading.or_else(relighting).or_else(|| self.drawing.doing())
     }
 
-    /// Cancels the background work and keeps the displayed frame.
+    /// Cancels the background work and keeps the displayed frame. Pipelines that are being compiled are finished, and
+    /// the settings that need them are undone.
     pub fn cancel(&mut self) {
+        if self.loading.is_none() && self.relighting.is_none() {
+            self.drawing.stop();
+        }
         self.loading = None;
         if self.relighting.take().is_some()
             && let Some(running) = &self.running
@@ -215,11 +225,11 @@ impl Live {
 
     /// Applies finished background work and advances the animation.
     pub fn tick(&mut self, session: &mut Session, passed_s: f32) {
+        self.collect(session, Duration::ZERO);
         if let Some(result) = self.loading.as_ref().and_then(Job::poll) {
             self.loading = None;
             match result {
                 Ok(Ok((loaded, warnings))) => {
-                    warnings.into_iter().take(3).for_each(|warning| session.say(warning));
                     self.preview = Preview::default();
                     self.bisecting = None;
                     self.wanted = loaded.environment.clone();
@@ -229,8 +239,12 @@ impl Live {
                     self.history.set(Document { capture, materials, ..self.document().clone() }, false);
                     self.material = None;
                     self.options.playing = false;
-                    self.running = Some(Running::new(&self.screen, loaded));
+                    session.begin_document();
+                    let running = Running::new(&self.screen, loaded);
+                    (self.rig, self.drawing) = (Some(running.rig.clone()), self.drawing.restarted());
+                    self.running = Some(running);
                     self.reported_plans = 0;
+                    warnings.into_iter().take(3).for_each(|warning| session.say(warning));
                     self.again();
                 }
                 Ok(Err(error)) => session.say(error),
@@ -256,7 +270,7 @@ impl Live {
         let end = Instant::now() + at_most;
         while Instant::now() < end {
             self.tick(session, 0.0);
-            if self.doing().is_none() {
+            if self.doing().is_none() && !self.drawing.is_working() {
                 return true;
             }
             std::thread::sleep(Duration::from_millis(2));
@@ -306,61 +320,6 @@ impl Live {
             move || wake(),
             move |handle| loading::light(&gpu, &scene, &environment, &settings, handle),
         ));
-    }
-
-    /// Returns whether a frame should be drawn.
-    pub fn wants_frame(&self) -> bool {
-        self.running.is_some() && (self.left > 0 || self.continuous || self.options.playing)
-    }
-
-    /// Draws the frame at a size if required, and passes its plan and times to the session.
-    pub fn draw(&mut self, size_px: [u32; 2], session: &mut Session) {
-        if !self.wants_frame() || size_px.contains(&0) {
-            return;
-        }
-        self.left = self.left.saturating_sub(1);
-        let document = self.history.now().clone();
-        let Some(running) = &mut self.running else { return };
-        // Until new light is available, draw with the existing light.
-        let mut drawn = document.clone();
-        let lit = running.loaded.light_settings;
-        drawn.frame.settings.shading.bands = lit.image.bands;
-        drawn.frame.settings.shading.table = lit.dfg.visibility;
-        if let Err(error) = running.draw(size_px, &drawn, &self.options) {
-            if self.refused.as_ref() != Some(&error) {
-                session.say(error.clone());
-            }
-            (self.refused, self.left) = (Some(error), 0);
-            return;
-        }
-        self.clock.tick(Instant::now());
-        self.report(session);
-    }
-
-    /// Passes plan and times to the session if it shows this frame.
-    fn report(&mut self, session: &mut Session) {
-        let Some(running) = &self.running else { return };
-        let shows = session.is_live() || session.plan.is_none();
-        if shows && running.plans() != self.reported_plans {
-            let name = format!("live frame, {}", running.loaded.name);
-            let drawn = (self.history.now().clone(), self.options.modes.clone());
-            let changed = self.reported_plans > 0 && drawn != self.drawn_with;
-            match PlanData::of(running.plan(), &name) {
-                Ok(plan) => {
-                    let (planner, base) = running.planner(self.history.now(), &self.options.modes);
-                    session.show_live(planner, base, Arc::new(plan), changed);
-                }
-                Err(error) => session.say(error.to_string()),
-            }
-            self.reported_plans = running.plans();
-            self.drawn_with = drawn;
-        }
-        if shows && self.times_at.is_none_or(|at| at.elapsed().as_secs_f32() >= TIMES_S) {
-            self.times_at = Some(Instant::now());
-            if let Some(trace) = running.frames().executor().timing().trace() {
-                session.take_times(times::of(trace));
-            }
-        }
     }
 
     /// Shows the plan of this frame again after a file was shown.

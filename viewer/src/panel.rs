@@ -7,7 +7,7 @@ mod paint;
 mod questions;
 
 pub use canvas::{Canvas, Clicked, MARGIN};
-pub use inspector::inspector;
+pub use inspector::{Link, inspector};
 pub use list::List;
 pub use questions::{Questions, Shown};
 

@@ -4,6 +4,7 @@
 //! live plan is converted through JSON too, so one reader and one set of views suffice.
 
 mod data;
+mod part;
 mod read;
 mod rows;
 

@@ -1,5 +1,7 @@
 //! Displayed data: plans with their sources, what-if questions and the selection. Independent of windows.
 
+mod live;
+
 use crate::accuracy_data::AccuracyData;
 use crate::drawing::Item;
 use crate::job::Job;
@@ -57,6 +59,12 @@ pub struct Session {
     pub read: Vec<PathBuf>,
     /// Error messages, oldest first.
     pub messages: Vec<String>,
+    /// Confirmation of the last saved file.
+    pub notice: Option<String>,
+    /// Displayed file; empty for a plan without one.
+    shown: Option<PathBuf>,
+    /// Counts displayed files and scenes.
+    documents: u64,
     base: Option<Arc<PlanData>>,
     against: Option<Arc<PlanData>>,
     /// Plan of the live frame before the last change of its settings.
@@ -86,6 +94,9 @@ impl Session {
             selected: None,
             read: Vec::new(),
             messages: Vec::new(),
+            notice: None,
+            shown: None,
+            documents: 0,
             base: None,
             against: None,
             before: None,
@@ -120,9 +131,26 @@ impl Session {
 
     /// Returns the plan to compare with: the opened plan, the plan without what-if changes, or the previous live plan.
     pub fn against(&self) -> Option<&PlanData> {
+        self.compared().map(|plan| &**plan)
+    }
+
+    /// Returns the plan to compare with, to share it with another thread.
+    pub fn compared(&self) -> Option<&Arc<PlanData>> {
         let asked = self.questions.as_ref().is_some_and(|q| q.asked != q.base);
-        let own = if asked { self.base.as_deref() } else { self.before.as_deref() };
-        self.against.as_deref().or(own)
+        let own = if asked { &self.base } else { &self.before };
+        self.against.as_ref().or(own.as_ref())
+    }
+
+    /// Counts displayed files and scenes. Views reset their zoom and the search when it changes.
+    pub fn documents(&self) -> u64 {
+        self.documents
+    }
+
+    /// Begins another file or scene: closes messages of the previous one.
+    pub fn begin_document(&mut self) {
+        self.documents += 1;
+        (self.notice, self.selected) = (None, None);
+        self.messages.clear();
     }
 
     /// Returns the selected item and the items related to it.
@@ -189,57 +217,6 @@ impl Session {
         self.planner = Some(planner);
         self.base = None;
         self.ask();
-    }
-
-    /// Shows the plan of the live frame and sets its planner.
-    ///
-    /// The what-if changes are kept. If `changed` is set, the user changed the frame, and the previous plan is kept for
-    /// comparison.
-    pub fn show_live(&mut self, planner: Arc<dyn Planner>, base: WhatIf, plan: Arc<PlanData>, changed: bool) {
-        self.watch = None;
-        let old = if std::mem::replace(&mut self.live, true) { self.base.take() } else { None };
-        if changed {
-            self.before = old;
-        }
-        let asked = match &self.questions {
-            Some(Questions { base: was, asked, .. }) if asked != was => {
-                let features = self.features(&*planner, asked);
-                WhatIf { features, ..asked.moved(was, &base) }
-            }
-            _ => base.clone(),
-        };
-        let same = asked == base;
-        let mut questions = Questions::new(base);
-        questions.asked = asked;
-        (self.questions, self.planner, self.base) = (Some(questions), Some(planner), Some(plan.clone()));
-        if same {
-            self.put(plan);
-        } else {
-            self.generation += 1;
-            self.ask();
-        }
-    }
-
-    /// Closes the plan, so that the live frame shows its own.
-    pub fn forget_plan(&mut self) {
-        (self.plan, self.planner, self.questions, self.base, self.watch) = (None, None, None, None, None);
-        self.generation += 1;
-    }
-
-    /// Returns whether the displayed frame is live.
-    pub fn is_live(&self) -> bool {
-        self.live
-    }
-
-    /// Replaces the frame times, and redraws the views that show them.
-    pub fn take_times(&mut self, trace: TraceData) {
-        self.trace = Some(Arc::new(trace));
-        self.times += 1;
-    }
-
-    /// Counts changes of times only.
-    pub fn times(&self) -> u64 {
-        self.times
     }
 
     /// Shows a plan without a source.
@@ -335,6 +312,12 @@ impl Session {
     }
 
     fn opened(&mut self, path: &Path, role: Role, opened: Opened) {
+        let is_plan = matches!(opened, Opened::Plan(_) | Opened::Graph(_)) && role == Role::Shown;
+        // A file that changed on disk keeps zoom and selection.
+        if is_plan && self.shown.as_deref() != Some(path) {
+            self.begin_document();
+            self.shown = Some(path.to_owned());
+        }
         match (opened, role) {
             (Opened::Trace(trace), _) => {
                 self.trace = Some(trace);
@@ -387,6 +370,11 @@ impl Session {
         self.plan = Some(plan);
         self.messages.retain(|message| !message.starts_with("previous plan kept"));
         self.generation += 1;
+    }
+
+    /// Confirms a finished action, such as saving a file.
+    pub fn confirm(&mut self, notice: String) {
+        self.notice = Some(notice);
     }
 
     /// Shows an error message to the user.

@@ -3,7 +3,9 @@
 //! `render --trace` and `framegraph_wgpu::Trace` write the file in Chrome's Trace Event Format. CPU and GPU are processes,
 //! each with a track of frames and a track of steps.
 
+use crate::plan_data::{PlanData, Step};
 use serde::Deserialize;
+use std::collections::HashMap;
 
 /// Ratio to the median time from which a frame counts as a stutter.
 pub const STUTTER: f64 = 2.0;
@@ -35,6 +37,8 @@ pub struct TracedFrame {
 pub struct TracedStep {
     /// Names of its passes, joined by ` + `.
     pub name: String,
+    /// Number of earlier steps of the frame with an equal name, such as the cascades of a shadow map.
+    pub earlier: usize,
     /// Recording times on the CPU.
     pub cpu_ms: Vec<f64>,
     /// Execution times on the GPU.
@@ -48,15 +52,39 @@ pub fn quartiles(sorted: &[f64]) -> Option<[f64; 3]> {
 }
 
 impl TraceData {
-    /// Returns the step with these passes.
-    pub fn step(&self, passes: &[String]) -> Option<&TracedStep> {
-        // Plans number passes of equal names, traces do not.
-        let plain = |name: &String| match name.rsplit_once('#') {
-            Some((plain, number)) if number.parse::<u32>().is_ok() => plain.to_owned(),
-            _ => name.clone(),
+    /// Returns the times of every step of a plan, by index.
+    pub fn steps_of(&self, plan: &PlanData) -> Vec<Option<&TracedStep>> {
+        let traced: HashMap<(&str, usize), &TracedStep> =
+            self.steps.iter().map(|step| ((step.name.as_str(), step.earlier), step)).collect();
+        let mut counts: HashMap<String, usize> = HashMap::new();
+        let of = |step| {
+            let name = traced_name(plan, step);
+            let earlier = counts.entry(name.clone()).or_default();
+            *earlier += 1;
+            traced.get(&(name.as_str(), *earlier - 1)).copied()
         };
-        let name = passes.iter().map(plain).collect::<Vec<_>>().join(" + ");
-        self.steps.iter().find(|step| step.name == name)
+        plan.form.steps.iter().map(of).collect()
+    }
+
+    /// Returns a sentence if the steps of the trace differ from those of a plan.
+    pub fn mismatch(&self, plan: &PlanData) -> Option<String> {
+        let found = self.steps_of(plan);
+        let missing = found.iter().filter(|step| step.is_none()).count();
+        let more = self.steps.len().saturating_sub(found.len() - missing);
+        let first = || {
+            let index = found.iter().position(Option::is_none);
+            let of_plan = index.map(|index| traced_name(plan, &plan.form.steps[index]));
+            let is_found = |step: &&TracedStep| found.iter().flatten().any(|known| std::ptr::eq(*known, *step));
+            of_plan.or_else(|| self.steps.iter().find(|step| !is_found(step)).map(|step| step.name.clone()))
+        };
+        (missing + more > 0).then(|| {
+            format!(
+                "the trace is of another frame: {missing} of {} steps of the plan have no times, {more} steps of the \
+                 trace are not in the plan, such as `{}`",
+                found.len(),
+                first().unwrap_or_default()
+            )
+        })
     }
 
     /// Returns the frames after warm-up.
@@ -76,6 +104,21 @@ impl TraceData {
         let limit = self.median_ms().map_or(f64::INFINITY, |median| median * STUTTER);
         self.warm().filter(|frame| frame.time_ms() >= limit && frame.time_ms() > 0.0).collect()
     }
+}
+
+/// Returns the name of a step in traces: its passes, without the numbers that plans give to passes of equal names.
+fn traced_name(plan: &PlanData, step: &Step) -> String {
+    let plain = |name: &String| {
+        let own = match name.rsplit_once('#') {
+            Some((plain, number)) if number.parse::<u32>().is_ok() => plain,
+            _ => name.as_str(),
+        };
+        // A full-screen resolve is a pass of its own, named after the pass whose samples it resolves.
+        let elsewhere = || plan.pass(name).is_some_and(|pass| plan.form.passes[pass].step != Some(step.index));
+        let resolves = step.full_screen_resolve && elsewhere();
+        format!("{own}{}", if resolves { " (resolve)" } else { "" })
+    };
+    step.passes.iter().map(plain).collect::<Vec<_>>().join(" + ")
 }
 
 impl TracedFrame {
@@ -150,12 +193,15 @@ pub fn read(text: &[u8]) -> Result<TraceData, String> {
         return Err("no frames of this library in the trace; write one with `render SCENE --trace FILE.json`".into());
     }
     let warm: std::collections::HashSet<u64> = trace.warm().map(|frame| frame.number).collect();
+    // Steps of one frame may have equal names; their events follow in the order of execution.
+    let mut counts: HashMap<(u64, u64, &str), usize> = HashMap::new();
+    let mut indices: HashMap<(&str, usize), usize> = HashMap::new();
     for event in complete().filter(|e| !frame_tracks.contains(&(e.pid, e.tid))) {
-        if event.args.frame.is_none_or(|frame| !warm.contains(&frame)) {
-            continue;
-        }
-        let index = trace.steps.iter().position(|step| step.name == event.name).unwrap_or_else(|| {
-            trace.steps.push(TracedStep { name: event.name.clone(), ..TracedStep::default() });
+        let Some(frame) = event.args.frame.filter(|frame| warm.contains(frame)) else { continue };
+        let count = counts.entry((frame, event.pid, event.name.as_str())).or_default();
+        let earlier = std::mem::replace(count, *count + 1);
+        let index = *indices.entry((event.name.as_str(), earlier)).or_insert_with(|| {
+            trace.steps.push(TracedStep { name: event.name.clone(), earlier, ..TracedStep::default() });
             trace.steps.len() - 1
         });
         let step = &mut trace.steps[index];

@@ -101,7 +101,7 @@ pub fn drawing(view: View, plan: &PlanData, context: ViewContext<'_>, letters: u
         View::Bandwidth => bandwidth::drawing(plan, context.against),
         View::Inspector => inspector::drawing(&inspector::sections(plan, context.selected), letters),
         View::Diff => diff::drawing(context.against, plan),
-        View::Trace => trace::drawing(context.trace),
+        View::Trace => trace::drawing(context.trace, plan),
         View::Accuracy => accuracy::drawing(context.accuracy, context.budget_ms),
         View::Queues => queues::drawing(plan, context.trace),
     }

@@ -8,12 +8,13 @@ use egui::{ViewportBuilder, ViewportCommand};
 use framegraph_wgpu::Gpu;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 use viewer::app::{Pane, Role, Session, Viewer};
 use viewer::drawing::Theme;
 use viewer::live::Live;
 use viewer::live::capture::Document;
 use viewer::live::screen::Screen;
-use viewer::view::View;
+use viewer::remembered::Remembered;
 
 /// State of the window.
 struct Program {
@@ -23,9 +24,16 @@ struct Program {
     select: Option<String>,
     frames: Option<u64>,
     drawn: u64,
-    /// File that keeps the arrangement of panes; `None` if the system has no folder for it.
+    /// File that keeps the state of the window; `None` if the system has no folder for it.
     kept: Option<PathBuf>,
+    /// Size of the window in points.
+    size: Option<[f32; 2]>,
+    /// Chosen theme.
+    dark: Option<bool>,
 }
+
+/// Size of the first window in points.
+const SIZE: [f32; 2] = [1280.0, 720.0];
 
 /// Shows the window until it is closed.
 ///
@@ -36,11 +44,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let mut setup = WgpuSetupCreateNew::without_display_handle();
     setup.device_descriptor = Arc::new(Gpu::descriptor);
     let wgpu_options = WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() };
+    let kept = Remembered::file(args.live);
+    let remembered = kept.as_deref().map(Remembered::read).unwrap_or_default();
+    // The zoom applies to points, so a larger font needs a larger window.
+    let size = remembered.size.unwrap_or(SIZE).map(|side| side * args.scale);
     let options = NativeOptions {
         wgpu_options,
         viewport: ViewportBuilder::default()
             .with_title("viewer")
-            .with_inner_size([1280.0, 720.0])
+            .with_inner_size(size)
+            .with_clamp_size_to_monitor_size(true)
             .with_drag_and_drop(true),
         renderer: Renderer::Wgpu,
         ..NativeOptions::default()
@@ -63,20 +76,31 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             (Some(_), None) => return Err("eframe opened no device".into()),
             (None, _) => Viewer::new(session),
         };
-        if let Some(theme) = args.theme {
-            cc.egui_ctx.set_theme(if theme == Theme::Dark { egui::Theme::Dark } else { egui::Theme::Light });
+        if let Some(dark) = args.theme.map(|theme| theme == Theme::Dark).or(remembered.dark) {
+            cc.egui_ctx.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
         }
         viewer::panel::dress(&cc.egui_ctx);
         cc.egui_ctx.set_zoom_factor(args.scale);
-        let kept = kept(args.live);
-        if let Some(text) = kept.as_ref().and_then(|path| std::fs::read_to_string(path).ok()) {
-            shown.arrange(&text);
+        if let Some(text) = &remembered.panes {
+            shown.arrange(text);
         }
-        shown.turn_to(if args.live && args.view == View::Graph { Pane::Viewport } else { Pane::View(args.view) });
+        if let Some(view) = args.view {
+            shown.turn_to(Pane::View(view));
+        }
+        shown.recent = remembered.recent;
         let files =
             [(args.against, Role::Against), (args.trace, Role::Shown), (args.file.filter(|_| !args.live), Role::Shown)];
         let waiting = files.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();
-        Ok(Box::new(Program { viewer: shown, waiting, select: args.select, frames: args.frames, drawn: 0, kept }))
+        Ok(Box::new(Program {
+            viewer: shown,
+            waiting,
+            select: args.select,
+            frames: args.frames,
+            drawn: 0,
+            kept,
+            size: None,
+            dark: None,
+        }))
     });
     eframe::run_native_ext("viewer", options, Some(ctx), create)
         .map_err(|e| Failure::Device(format!("window: cannot be opened: {e}")))
@@ -92,30 +116,17 @@ fn document(args: &Args) -> Result<Option<Document>, Failure> {
     Ok(Some(Document { frame, ..Document::default() }))
 }
 
-/// Returns the file of the pane arrangement.
-///
-/// It is `framegraph-viewer/panes.json` in the user's state folder (XDG Base Directory Specification 0.8), or in the
-/// settings folder on other systems.
-fn kept(live: bool) -> Option<PathBuf> {
-    let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let home = || Some(folder("HOME")?.join(".local/state"));
-    let base = folder("XDG_STATE_HOME").or_else(|| folder("APPDATA")).or_else(home)?;
-    let file = if live { "framegraph-viewer/panes-live.json" } else { "framegraph-viewer/panes.json" };
-    Some(base.join(file))
-}
-
 impl App for Program {
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut Frame) {
-        let session = &mut self.viewer.session;
-        session.poll();
-        if session.doing().is_none() {
+        self.viewer.session.poll();
+        if self.viewer.session.doing().is_none() {
             if let Some((path, role)) = self.waiting.pop() {
-                session.open(&path, role);
-            } else if let Some((name, plan)) = self.select.take().zip(session.plan.as_ref()) {
+                self.viewer.open(&path, role);
+            } else if let Some((name, plan)) = self.select.take().zip(self.viewer.session.plan.as_ref()) {
                 use viewer::drawing::Item;
                 let item = plan.pass(&name).map(Item::Pass).or(plan.resource(&name).map(Item::Resource));
                 self.viewer.select(item);
@@ -125,6 +136,12 @@ impl App for Program {
         // Count frames only after the scene is loaded.
         let loading = self.viewer.live.as_ref().is_some_and(|live| live.running.is_none() && live.doing().is_some());
         self.drawn += u64::from(!loading);
+        let size = ui.input(|i| i.viewport().inner_rect.map(|rect| [rect.width(), rect.height()]));
+        self.size = size.or(self.size);
+        self.dark = match ui.ctx().options(|options| options.theme_preference) {
+            egui::ThemePreference::System => None,
+            preference => Some(preference == egui::ThemePreference::Dark),
+        };
         if let Some(frames) = self.frames {
             if self.drawn >= frames {
                 ui.ctx().send_viewport_cmd(ViewportCommand::Close);
@@ -136,14 +153,16 @@ impl App for Program {
 
     fn on_exit(&mut self) {
         if self.frames.is_some() {
+            if let Some(live) = &mut self.viewer.live {
+                live.settle(&mut self.viewer.session, Duration::from_secs(60));
+            }
             program::line(format_args!("{} frames", self.drawn));
             if let Some(running) = self.viewer.live.as_ref().and_then(|live| live.running.as_ref()) {
                 program::line(format_args!("{} of the scene", running.drawn()));
             }
         }
-        let (Some(path), Some(text)) = (&self.kept, self.viewer.arrangement()) else { return };
-        // Failing to save the arrangement is not worth a message.
-        let _ = path.parent().map(std::fs::create_dir_all);
-        let _ = std::fs::write(path, text);
+        let Some(path) = &self.kept else { return };
+        let (panes, recent) = (self.viewer.arrangement(), self.viewer.recent.clone());
+        Remembered { panes, dark: self.dark, size: self.size, recent }.write(path);
     }
 }

@@ -1,7 +1,7 @@
 //! Actions on files chosen in dialogs.
 
 use super::Viewer;
-use super::dialog::Purpose;
+use super::dialog::{Answer, Purpose};
 use crate::drawing::Theme;
 use crate::live::file_request::FileRequest;
 use crate::session::Role;
@@ -24,11 +24,20 @@ impl Viewer {
             let purpose = match asked {
                 FileRequest::Open => Purpose::Open(Role::Shown),
                 FileRequest::SaveSettings => Purpose::SaveSettings,
+                FileRequest::SaveTexture => Purpose::Texture,
             };
             self.dialog.ask(purpose, ui.ctx());
         }
-        if let Some((purpose, path)) = self.dialog.answer() {
-            self.chosen(purpose, &path, crate::panel::theme(ui));
+        match self.dialog.answer() {
+            Some((purpose, Answer::File(path))) => self.chosen(purpose, &path, crate::panel::theme(ui)),
+            Some((Purpose::Open(_), Answer::NoDialog)) => {
+                self.focus_path = true;
+                self.session.confirm("no file dialog on this desktop: type the path at the top".into());
+            }
+            Some((_, Answer::NoDialog)) => {
+                self.session.confirm("no file dialog on this desktop: type the path beside the button".into());
+            }
+            Some((_, Answer::Cancelled)) | None => {}
         }
     }
 
@@ -42,7 +51,14 @@ impl Viewer {
             },
             Purpose::Export(view) => self.export(view, path, theme),
             Purpose::Trace => self.export_trace(path),
+            Purpose::Texture => match &self.live {
+                Some(live) => crate::live::preview::save(&live.preview, path, &live.read()),
+                None => return,
+            },
         };
-        self.session.say(done.map_or_else(|error| error, |()| format!("wrote {}", path.display())));
+        match done {
+            Ok(()) => self.session.confirm(format!("saved {}", path.display())),
+            Err(error) => self.session.say(error),
+        }
     }
 }

@@ -6,6 +6,7 @@ use crate::view::View;
 use egui::Context;
 use rfd::AsyncFileDialog;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// Purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +19,8 @@ pub enum Purpose {
     Export(View),
     /// Exports frame times.
     Trace,
+    /// Saves the texture of the preview.
+    Texture,
 }
 
 impl Purpose {
@@ -34,6 +37,7 @@ impl Purpose {
             Self::SaveSettings => &[("settings", &["ron"])],
             Self::Export(_) => &[("a view", &["svg", "png", "txt"]), ("the plan", &["json", "ron", "dot", "mmd"])],
             Self::Trace => &[("frame times for Perfetto", &["json"])],
+            Self::Texture => &[("the picture", &["png"]), ("the values", &["exr"])],
         }
     }
 
@@ -44,14 +48,29 @@ impl Purpose {
             Self::SaveSettings => Some("settings.ron".into()),
             Self::Export(view) => Some(format!("{}.svg", view.word())),
             Self::Trace => Some("trace.json".into()),
+            Self::Texture => Some("texture.png".into()),
         }
     }
+}
+
+/// Maximum time in which a desktop without a file dialog answers; users take longer.
+const NO_DIALOG: Duration = Duration::from_millis(400);
+
+/// Answer of a file dialog.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Answer {
+    /// Chosen file.
+    File(PathBuf),
+    /// The user closed the dialog.
+    Cancelled,
+    /// The desktop has no file dialog.
+    NoDialog,
 }
 
 /// State of the file dialog.
 #[derive(Debug, Default)]
 pub(super) struct Dialog {
-    open: Option<(Purpose, Job<Option<PathBuf>>)>,
+    open: Option<(Purpose, Instant, Job<(Option<PathBuf>, Instant)>)>,
 }
 
 impl Dialog {
@@ -71,15 +90,25 @@ impl Dialog {
             Some(name) => Box::new(Box::pin(dialog.set_file_name(name).save_file())),
         };
         let ctx = ctx.clone();
-        let wait = move |_: &crate::job::Handle| pollster::block_on(answer).map(|file| file.path().to_owned());
-        self.open = Some((purpose, Job::start("choosing a file", move || ctx.request_repaint(), wait)));
+        let wait = move |_: &crate::job::Handle| {
+            let file = pollster::block_on(answer).map(|file| file.path().to_owned());
+            (file, Instant::now())
+        };
+        let job = Job::start("choosing a file", move || ctx.request_repaint(), wait);
+        self.open = Some((purpose, Instant::now(), job));
     }
 
-    /// Returns a newly chosen file with its purpose.
-    pub fn answer(&mut self) -> Option<(Purpose, PathBuf)> {
-        let (purpose, job) = self.open.as_ref()?;
-        let (purpose, answer) = (*purpose, job.poll()?);
+    /// Returns a new answer with its purpose.
+    pub fn answer(&mut self) -> Option<(Purpose, Answer)> {
+        let (purpose, asked, job) = self.open.as_ref()?;
+        let (purpose, asked, result) = (*purpose, *asked, job.poll()?);
         self.open = None;
-        Some((purpose, answer.ok()??))
+        let answer = match result {
+            Ok((Some(file), _)) => Answer::File(file),
+            // The portal reports a missing dialog like a cancelled one, but at once.
+            Ok((None, at)) if at.duration_since(asked) > NO_DIALOG => Answer::Cancelled,
+            Ok((None, _)) | Err(()) => Answer::NoDialog,
+        };
+        Some((purpose, answer))
     }
 }

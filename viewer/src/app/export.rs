@@ -2,6 +2,7 @@
 
 use super::Viewer;
 use super::dialog::Purpose;
+use super::drawings::drawn;
 use crate::drawing::{Drawing, Theme, svg};
 use crate::offscreen::{Offscreen, own_size_px};
 use crate::plan_data::PlanData;
@@ -100,7 +101,8 @@ impl Viewer {
     /// # Errors
     /// One line that names the file.
     pub(super) fn export(&self, view: View, path: &Path, theme: Theme) -> Result<(), String> {
-        write(path, self.drawings.get(&view), self.session.plan.as_deref(), theme, &self.read())
+        let drawing = (self.session.plan.is_some() || !view.is_of_a_plan()).then(|| drawn(view, &self.session));
+        write(path, drawing.as_ref(), self.session.plan.as_deref(), theme, &self.read())
     }
 
     /// Exports the times of the drawn frames in the trace event format.

@@ -1,7 +1,8 @@
 //! Panes and their arrangement.
 
+use super::drawings::Drawings;
 use super::strip::Strip;
-use crate::drawing::{Drawing, Item};
+use crate::drawing::Item;
 use crate::panel::{self, Canvas, Clicked, List, Shown};
 use crate::session::Session;
 use crate::view::{self, View};
@@ -56,7 +57,7 @@ impl Pane {
 /// Returns the default arrangement.
 ///
 /// Search and what-if are on the left, views as tabs in the center, the inspector on the right. With a live frame, its
-/// settings are on the left, the frame in the center, and its textures on the right.
+/// settings are on the left, and the frame stands beside the views, which are above the inspector.
 pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let views = View::ALL.into_iter().filter(|view| *view != View::Inspector).map(Pane::View);
@@ -68,40 +69,43 @@ pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let set = [Pane::Settings, Pane::Effects, Pane::Lens, Pane::Scene, Pane::Debugging];
     let asked = [Pane::List, Pane::WhatIf];
     let left = tabs(if live { set.to_vec() } else { asked.to_vec() });
-    let middle = tabs(drawn(&[Pane::Viewport]).into_iter().chain(views).collect());
+    let middle = tabs(views.collect());
     let beside = drawn(&[Pane::Preview, asked[0], asked[1]]);
     let inspector = tabs([Pane::View(View::Inspector)].into_iter().chain(beside).collect());
-    let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, vec![left, middle, inspector]);
-    let shares = if live { [1.15, 2.4, 1.1] } else { [0.98, 2.6, 1.0] };
-    for (tile, share) in [left, middle, inspector].into_iter().zip(shares) {
+    let columns = if live {
+        let viewport = tabs(vec![Pane::Viewport]);
+        let stacked = tiles.insert_vertical_tile(vec![middle, inspector]);
+        vec![(left, 1.1), (viewport, 1.9), (stacked, 1.9)]
+    } else {
+        vec![(left, 0.98), (middle, 2.6), (inspector, 1.0)]
+    };
+    let tiles_of = columns.iter().map(|(tile, _)| *tile).collect();
+    let mut row = egui_tiles::Linear::new(egui_tiles::LinearDir::Horizontal, tiles_of);
+    for (tile, share) in columns {
         row.shares.set_share(tile, share);
     }
     let root = tiles.insert_container(row);
     Tree::new(egui::Id::unique("panes"), root, tiles)
 }
 
-/// Returns whether an arrangement contains every pane once.
-pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
-    let panes = |tree: &Tree<Pane>| -> Vec<Pane> {
-        let of = tree.tiles.tiles().filter_map(|tile| match tile {
-            Tile::Pane(pane) => Some(*pane),
-            Tile::Container(_) => None,
-        });
-        of.collect()
-    };
-    let (found, all) = (panes(tree), panes(&arranged(live)));
-    found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
+/// Returns all panes of an arrangement.
+fn panes_of(tree: &Tree<Pane>) -> Vec<Pane> {
+    let of = tree.tiles.tiles().filter_map(|tile| match tile {
+        Tile::Pane(pane) => Some(*pane),
+        Tile::Container(_) => None,
+    });
+    of.collect()
 }
 
-/// Pans every view to the selected item, or to a related item if the view does not show it.
-pub(super) fn reveal(canvases: &mut BTreeMap<View, Canvas>, drawings: &BTreeMap<View, Drawing>, lit: &[Item]) {
-    for (view, canvas) in canvases {
-        if let Some(drawing) = drawings.get(view)
-            && let Some(item) = lit.iter().find(|item| drawing.hits.iter().any(|hit| hit.item == Some(**item)))
-        {
-            canvas.reveal(drawing, *item);
-        }
-    }
+/// Returns all panes in one container of tabs.
+pub(super) fn in_tabs(live: bool) -> Tree<Pane> {
+    Tree::new_tabs(egui::Id::unique("panes"), panes_of(&arranged(live)))
+}
+
+/// Returns whether an arrangement contains every pane once.
+pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
+    let (found, all) = (panes_of(tree), panes_of(&arranged(live)));
+    found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
 }
 
 /// State required to show the panes.
@@ -109,7 +113,7 @@ pub(super) struct Panes<'a> {
     pub session: &'a mut Session,
     pub list: &'a mut List,
     pub canvases: &'a mut BTreeMap<View, Canvas>,
-    pub drawings: &'a BTreeMap<View, Drawing>,
+    pub drawings: &'a mut Drawings,
     pub strip: &'a mut Strip,
     #[cfg(feature = "window")]
     pub live: &'a mut Option<crate::live::Live>,
@@ -121,7 +125,6 @@ pub(super) struct Panes<'a> {
 impl Panes<'_> {
     fn select(&mut self, item: Option<Item>) {
         self.session.selected = item;
-        reveal(self.canvases, self.drawings, &self.session.lit());
     }
 
     fn view(&mut self, ui: &mut Ui, view: View) {
@@ -134,12 +137,25 @@ impl Panes<'_> {
         };
         if view == View::Inspector {
             let sections = view::inspector::sections(&plan, self.session.selected);
-            if let Some(item) = panel::inspector(ui, &sections) {
-                self.select(Some(item));
+            match panel::inspector(ui, &sections) {
+                Some(panel::Link::Item(item)) => self.select(Some(item)),
+                Some(panel::Link::Source(place)) => {
+                    if let Err(error) = crate::editor::open(&place) {
+                        self.session.say(error);
+                    }
+                }
+                None => {}
             }
             return;
         }
-        let Some(drawing) = self.drawings.get(&view) else { return };
+        let ctx = ui.ctx().clone();
+        let Some(drawing) = self.drawings.get(view, self.session, move || ctx.request_repaint()) else {
+            ui.horizontal(|ui| {
+                ui.spinner();
+                ui.label(format!("drawing the {}", view.word()));
+            });
+            return;
+        };
         ui.horizontal(|ui| {
             let canvas = self.canvases.entry(view).or_default();
             if ui.small_button("Fit").on_hover_text("Show the whole view (F)").clicked() {

@@ -2,6 +2,7 @@
 
 use super::capture::Document;
 use super::frame::{DrawOptions, Running};
+use crate::job::Handle;
 use framegraph_wgpu::debug::{Mode, Modes, Outcome, bisect};
 use framegraph_wgpu::read_texture;
 
@@ -44,16 +45,23 @@ impl Bisecting {
         !self.outcomes.is_empty()
     }
 
-    /// Returns the completed fraction, 0 to 1.
-    pub fn progress(&self) -> f32 {
-        self.drawn.len() as f32 / (Mode::ALL.len() + 2) as f32
+    /// Draws and compares all modes. Ends early after cancellation.
+    ///
+    /// # Errors
+    /// An error of the frame or the device.
+    pub fn run(&mut self, running: &mut Running, handle: &Handle) -> Result<(), String> {
+        while !self.is_done() && !handle.is_cancelled() {
+            self.step(running)?;
+            handle.step(self.drawn.len() as u64, Mode::ALL.len() as u64 + 2);
+        }
+        Ok(())
     }
 
     /// Draws the next mode.
     ///
     /// # Errors
     /// An error of the frame or the device in this mode.
-    pub fn step(&mut self, running: &mut Running) -> Result<(), String> {
+    fn step(&mut self, running: &mut Running) -> Result<(), String> {
         let mode = match self.drawn.len() {
             0 | 1 => None,
             tried => Mode::ALL.get(tried - 2).copied(),
@@ -61,7 +69,7 @@ impl Bisecting {
         let options = DrawOptions { modes: Modes(mode.into_iter().collect()), ..self.options.clone() };
         running.restart();
         for _ in 0..FRAMES {
-            running.draw(self.size_px, &self.document, &options)?;
+            running.draw(self.size_px, &self.document, &options, &mut |_, _| ())?;
         }
         let texture = running.picture_texture().ok_or("the frame has no picture")?;
         let pixels = read_texture(&running.screen().gpu, texture).map_err(|e| e.to_string())?;

@@ -7,4 +7,6 @@ pub enum FileRequest {
     Open,
     /// Saves the settings of the frame.
     SaveSettings,
+    /// Saves the texture of the preview.
+    SaveTexture,
 }

@@ -23,6 +23,7 @@ use framegraph_wgpu::{ExecutorOptions, FrameLoop};
 use glam::{DVec2, Vec2};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Debug modes and animation state of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,7 +81,12 @@ pub struct Running {
     index: u32,
     key: Option<(Settings, Options)>,
     plans: u64,
+    /// Number of frames that the device has not finished.
+    queued: Arc<AtomicU32>,
 }
+
+/// Maximum number of queued frames.
+const QUEUED: u32 = 2;
 
 impl Running {
     /// Creates a frame that has not been drawn yet.
@@ -103,6 +109,7 @@ impl Running {
             index: 0,
             key: None,
             plans: 0,
+            queued: Arc::default(),
         }
     }
 
@@ -112,11 +119,18 @@ impl Running {
         self.light += 1;
     }
 
-    /// Draws one frame. On failure the previous picture stays.
+    /// Draws one frame. On failure the previous picture stays. `progress` is called with the number of steps whose
+    /// pipelines exist, and of all steps, if the plan is new.
     ///
     /// # Errors
     /// One line with the error of the frame or the device.
-    pub fn draw(&mut self, size_px: [u32; 2], document: &Document, requested: &DrawOptions) -> Result<(), String> {
+    pub fn draw(
+        &mut self,
+        size_px: [u32; 2],
+        document: &Document,
+        requested: &DrawOptions,
+        progress: &mut dyn FnMut(u64, u64),
+    ) -> Result<(), String> {
         document.frame.settings.shading.precision.check(&self.screen.gpu).map_err(|e| e.to_string())?;
         self.pose(document.capture.animation, requested.time_s)?;
         self.paint(&document.materials)?;
@@ -131,18 +145,36 @@ impl Running {
         *self.frames.options_mut() = options;
         let texture = self.texture(size_px);
         let (facts, world) = (&self.facts, &self.loaded.world);
-        let ran = self.frames.run(size_px, world, |frame, imports| {
+        let declared = |frame: &mut framegraph_wgpu::Frame<World>, imports: &mut framegraph_wgpu::Imports| {
             let output = declare(frame, &settings, facts)?;
             imports.texture(output, &texture);
             Ok::<_, framegraph_passes::StageError>(())
-        });
+        };
+        let key = (settings, options);
+        if self.key != Some(key) {
+            self.frames.declare(size_px, declared).map_err(|error| error.to_string())?;
+            let made = self.frames.warm_up(world, &mut |at| progress(at.done as u64, at.total as u64));
+            made.map_err(|error| error.to_string())?;
+        }
+        let ran = self.frames.run(size_px, world, declared);
         self.index = self.index.wrapping_add(1);
         ran.map_err(|error| error.to_string())?;
-        let key = (settings, options);
+        self.queued.fetch_add(1, Ordering::Relaxed);
+        let queued = self.queued.clone();
+        self.screen.gpu.queue.on_submitted_work_done(move || {
+            queued.fetch_sub(1, Ordering::Relaxed);
+        });
         if self.key != Some(key) {
             (self.key, self.plans) = (Some(key), self.plans + 1);
         }
         Ok(())
+    }
+
+    /// Returns whether the device has not finished earlier frames, so that another one would have to wait.
+    pub fn is_busy(&self) -> bool {
+        // A lost device is reported by the next frame.
+        let _ = self.screen.gpu.poll();
+        self.queued.load(Ordering::Relaxed) >= QUEUED
     }
 
     /// Restarts histories and temporal effects, as after a camera cut.

@@ -1,31 +1,38 @@
 //! Texture preview of the live frame: any version, mip level, layer, plane and sample, as numbers and as a picture. It
 //! executes a second plan, so the frame's own plan is unchanged.
 
+pub mod look;
+pub mod pan;
+mod picture;
+mod read;
+mod save;
+
+pub use read::{BINS, Found, histogram, read};
+pub use save::save;
+
 use super::frame::Running;
-use framegraph_wgpu::inspect::{Channel, DisplayImage, DisplayMode, InspectTarget, Inspector, Texels, all_targets};
+use crate::job::Job;
+use framegraph_wgpu::inspect::{InspectTarget, Inspector, all_targets};
+use look::Look;
+use pan::Pan;
+use std::sync::Arc;
+use std::time::Duration;
 
-/// Number of histogram bins.
-pub const BINS: usize = 64;
+/// Maximum time that panels wait for a picture.
+const PATIENCE: Duration = Duration::from_millis(10);
 
-/// Inspected texture.
-pub struct Found {
-    /// Description.
-    pub title: String,
-    /// Texels.
-    pub texels: Texels,
-    /// Texels as numbers.
-    pub numbers: Vec<[f32; 4]>,
-    /// Minimum and maximum finite values of the existing channels; 0 if none is finite.
-    pub span: [f32; 2],
-    /// Displayed picture.
-    pub picture: DisplayImage,
+/// Displayed picture of a texture.
+pub struct Picture {
+    /// RGBA, 8 bits per channel.
+    pub rgba8: Vec<u8>,
+    /// Width and height in texels.
+    pub size: [u32; 2],
     /// Number of the picture, for caching.
     pub made: u64,
-    /// Histogram of each channel over the displayed range.
-    pub histogram: Vec<[u32; BINS]>,
 }
 
 /// State of the texture preview.
+#[derive(Default)]
 pub struct Preview {
     /// Full name of the resource.
     pub name: Option<String>,
@@ -39,39 +46,35 @@ pub struct Preview {
     pub plane: usize,
     /// Sample; `None` for the average.
     pub sample: Option<u8>,
-    /// Display mode.
-    pub mode: DisplayMode,
+    /// Channels and range.
+    pub look: Look,
+    /// Zoom and position.
+    pub pan: Pan,
     /// Updates the preview in every frame.
     pub follow: bool,
+    /// Inspectable subresources of the resource.
+    pub targets: Vec<InspectTarget>,
     /// Last inspected texture.
-    pub found: Option<Found>,
+    pub found: Option<Arc<Found>>,
+    /// Picture of the texture.
+    pub picture: Option<Picture>,
+    /// Texel whose values stay visible.
+    pub pinned: Option<[u32; 2]>,
     /// Reason that inspection failed.
     pub error: Option<String>,
+    /// Typed path of the file to save.
+    pub path: String,
+    /// Result of saving.
+    pub saved: Option<Result<String, String>>,
     inspector: Option<Inspector>,
+    listed: Option<(String, u64)>,
     asked: Option<(InspectTarget, u64)>,
-    shown: Option<DisplayMode>,
-    made: u64,
-}
-
-impl Default for Preview {
-    fn default() -> Self {
-        Self {
-            name: None,
-            version: None,
-            mip: 0,
-            layer: 0,
-            plane: 0,
-            sample: None,
-            mode: DisplayMode::Auto,
-            follow: false,
-            found: None,
-            error: None,
-            inspector: None,
-            asked: None,
-            shown: None,
-            made: 0,
-        }
-    }
+    reading: bool,
+    /// Resource and plane for which the look was chosen.
+    looked: Option<(String, usize)>,
+    drawing: Option<Job<Vec<u8>>>,
+    drawn: Option<(Look, u64)>,
+    finds: u64,
 }
 
 impl Preview {
@@ -82,7 +85,8 @@ impl Preview {
         }
         self.name = Some(name.to_owned());
         (self.version, self.mip, self.layer, self.plane, self.sample) = (None, 0, 0, 0, None);
-        self.asked = None;
+        (self.asked, self.pinned, self.saved) = (None, None, None);
+        self.pan = Pan::default();
     }
 
     /// Inspects the texture again in the next frame.
@@ -90,9 +94,19 @@ impl Preview {
         self.asked = None;
     }
 
-    /// Returns the inspectable subresources of the resource.
-    pub fn targets(&self, running: &Running) -> Vec<InspectTarget> {
-        let Some(name) = &self.name else { return Vec::new() };
+    /// Returns whether a texture is being read.
+    pub fn is_reading(&self) -> bool {
+        self.reading
+    }
+
+    /// Lists the inspectable subresources of the resource after a change of the plan.
+    pub(super) fn list(&mut self, running: &Running) {
+        let Some(name) = self.name.clone() else { return };
+        let listed = (name, running.plans());
+        if self.listed.as_ref() == Some(&listed) {
+            return;
+        }
+        let name = &listed.0;
         let graph = running.plan().graph();
         let resource = |target: &InspectTarget| graph.versions()[target.version.index()].resource;
         // Plan rows number resources of equal names, in order.
@@ -107,11 +121,12 @@ impl Preview {
         of_name.dedup();
         let own = of_name.get(number - 1).copied();
         all.retain(|target| Some(resource(target)) == own);
-        all
+        (self.targets, self.listed) = (all, Some(listed));
     }
 
     /// Returns the selected subresource.
-    fn target(&self, targets: &[InspectTarget]) -> Option<InspectTarget> {
+    fn target(&self) -> Option<InspectTarget> {
+        let targets = &self.targets;
         let newest = targets.iter().map(|target| target.number).max()?;
         let number = self.version.filter(|v| targets.iter().any(|t| t.number == *v)).unwrap_or(newest);
         let of_version: Vec<&InspectTarget> = targets.iter().filter(|target| target.number == number).collect();
@@ -122,102 +137,66 @@ impl Preview {
             |target: &&&InspectTarget| target.aspect == aspect && target.mip == self.mip && target.layer == self.layer;
         let found = of_version.iter().find(is_asked).or(of_version.first())?;
         let mut found = (*found).clone();
-        found.sample = self.sample;
+        found.sample = self.sample.or(found.sample);
         Some(found)
     }
 
-    /// Inspects the texture after a change of the selection; `frame` identifies the drawn frame if the preview follows.
-    pub fn refresh(&mut self, running: &Running, frame: u64) {
-        let targets = self.targets(running);
-        let Some(target) = self.target(&targets) else {
-            (self.found, self.error) =
-                (None, self.name.as_ref().map(|name| format!("`{name}` has no texels in this frame")));
-            return;
+    /// Returns the subresource to read after a change of the selection, with the inspector to use. `frame` identifies the
+    /// drawn frame if the preview follows.
+    pub(super) fn begin(&mut self, running: &Running, frame: u64) -> Option<(InspectTarget, Inspector)> {
+        self.list(running);
+        let Some(target) = self.target() else {
+            (self.found, self.picture) = (None, None);
+            self.error = self.name.as_ref().map(|name| format!("`{name}` has no texels in this frame"));
+            return None;
         };
-        let frame = if self.follow { frame } else { running.plans() };
-        let asked = (target, frame);
-        if self.asked.as_ref() != Some(&asked) {
-            self.shown = None;
-            match self.look(running, &asked.0) {
-                Ok(found) => (self.found, self.error) = (Some(found), None),
-                Err(error) => (self.found, self.error) = (None, Some(error)),
+        let asked = (target, if self.follow { frame } else { running.plans() });
+        if self.reading || self.asked.as_ref() == Some(&asked) {
+            return None;
+        }
+        let inspector = self.inspector.take().unwrap_or_else(|| Inspector::new(&running.screen().gpu));
+        self.reading = true;
+        let target = asked.0.clone();
+        self.asked = Some(asked);
+        Some((target, inspector))
+    }
+
+    /// Takes the result of reading.
+    pub(super) fn take(&mut self, inspector: Inspector, result: Result<Found, String>) {
+        (self.inspector, self.reading) = (Some(inspector), false);
+        match result {
+            Ok(found) => {
+                let looked = (self.name.clone().unwrap_or_default(), self.plane);
+                if self.looked.as_ref() != Some(&looked) {
+                    (self.look, self.looked) = (Look::natural(&found), Some(looked));
+                }
+                self.finds += 1;
+                (self.found, self.error) = (Some(Arc::new(found)), None);
             }
-            self.asked = Some(asked);
-        }
-        self.display(running);
-    }
-
-    fn look(&mut self, running: &Running, target: &InspectTarget) -> Result<Found, String> {
-        let frames = running.frames();
-        let inspector = self.inspector.get_or_insert_with(|| Inspector::new(&running.screen().gpu));
-        let (executor, plan, world) = (frames.executor(), frames.plan(), &running.loaded.world);
-        let found = inspector.inspect_target(executor, plan, frames.frame(), world, frames.imports(), target.clone());
-        let found = found.map_err(|e| e.to_string())?;
-        let (title, numbers) = (found.title(), found.texels.numbers());
-        let picture = DisplayImage { rgba8: Vec::new(), range: [0.0; 2], non_finite: 0 };
-        let span = span(&numbers, found.texels.channels());
-        Ok(Found { title, texels: found.texels, numbers, span, picture, made: 0, histogram: Vec::new() })
-    }
-
-    /// Converts the texels to a picture after a change of the display mode.
-    fn display(&mut self, running: &Running) {
-        if self.shown == Some(self.mode) {
-            return;
-        }
-        let near_m = running.rig.camera(None).projection.near_m() as f32;
-        if let Some(found) = &mut self.found {
-            found.picture = found.texels.display(self.mode, near_m);
-            self.made += 1;
-            found.made = self.made;
-            found.histogram = histogram(&found.numbers, found.texels.channels(), found.span);
-            self.shown = Some(self.mode);
+            Err(error) => (self.found, self.picture, self.error) = (None, None, Some(error)),
         }
     }
-}
 
-impl Found {
-    /// Returns the values of a texel; `None` outside the picture.
-    pub fn texel(&self, [x, y]: [u32; 2]) -> Option<[f32; 4]> {
-        let [width, height] = self.texels.size;
-        (x < width && y < height).then(|| self.numbers[(y * width + x) as usize])
-    }
-}
-
-/// Returns the minimum and maximum finite values of the first `channels` channels; 0 if none is finite.
-fn span(numbers: &[[f32; 4]], channels: usize) -> [f32; 2] {
-    let finite = numbers.iter().flat_map(|texel| &texel[..channels]).copied().filter(|x| x.is_finite());
-    let [low, high] = finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
-    if low <= high { [low, high] } else { [0.0; 2] }
-}
-
-/// Counts the values of each channel per bin of a range; NaN and infinity are ignored.
-pub fn histogram(numbers: &[[f32; 4]], channels: usize, [low, high]: [f32; 2]) -> Vec<[u32; BINS]> {
-    let mut all = vec![[0; BINS]; channels];
-    let per_bin = (high - low) / BINS as f32;
-    for texel in numbers {
-        for (boxes, number) in all.iter_mut().zip(texel).filter(|(_, number)| number.is_finite()) {
-            let at = if per_bin > 0.0 { ((number - low) / per_bin) as usize } else { 0 };
-            boxes[at.min(BINS - 1)] += 1;
+    /// Creates the picture after a change of the texture or the look, on another thread that calls `wake` at the end.
+    /// Waits at most some milliseconds, or until it is finished if `blocking` is set.
+    pub fn display(&mut self, blocking: bool, wake: impl FnOnce() + Send + 'static) {
+        let Some(found) = self.found.clone() else { return };
+        let wanted = (self.look.clone(), self.finds);
+        if self.drawn.as_ref() != Some(&wanted) && self.drawing.is_none() {
+            let (look, texture) = (self.look.clone(), found.clone());
+            self.drawing = Some(Job::start("drawing a texture", wake, move |_| picture::picture(&texture, &look)));
+            self.drawn = Some(wanted);
         }
-    }
-    all
-}
-
-/// Channels by name.
-pub const CHANNELS: [(&str, Channel); 4] =
-    [("red", Channel::Red), ("green", Channel::Green), ("blue", Channel::Blue), ("alpha", Channel::Alpha)];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_finite_value_is_in_one_bin() {
-        let numbers = [[0.0, 1.0, f32::NAN, 1.0], [0.5, -1.0, 2.0, 1.0], [1.0, f32::INFINITY, 0.0, 1.0]];
-        let found = histogram(&numbers, 3, [-1.0, 2.0]);
-        let sums: Vec<u32> = found.iter().map(|boxes| boxes.iter().sum()).collect();
-        assert_eq!(sums, [3, 2, 2]);
-        assert_eq!((found[1][0], found[2][BINS - 1]), (1, 1));
-        assert_eq!(histogram(&[[5.0; 4]], 1, [5.0, 5.0])[0][0], 1);
+        let patience = if blocking { Duration::from_secs(600) } else { PATIENCE };
+        if let Some(rgba8) = self.drawing.as_ref().and_then(|job| job.wait(patience)) {
+            self.drawing = None;
+            let made = self.picture.as_ref().map_or(0, |picture| picture.made) + 1;
+            if rgba8.len() == found.numbers.len() * 4 {
+                self.picture = Some(Picture { rgba8, size: found.texels.size, made });
+            } else {
+                // The texture changed in the meantime.
+                self.drawn = None;
+            }
+        }
     }
 }

@@ -10,6 +10,8 @@ pub struct SettingsPanel {
     pub tree: Option<(FrameSettings, Node)>,
     /// Reason that the last edit was rejected.
     pub refused: Option<String>,
+    /// Confirmation that the settings were saved, until they change.
+    pub saved: Option<String>,
     /// Search text for field names.
     pub search: String,
 }

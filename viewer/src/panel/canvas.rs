@@ -21,11 +21,13 @@ pub struct Canvas {
     least: f32,
     /// Panel and transform to the screen in the last frame.
     last: (Rect, TSTransform),
+    /// Selected item to which the canvas was last panned.
+    revealed: Option<Item>,
 }
 
 impl Default for Canvas {
     fn default() -> Self {
-        Self { view: None, least: READABLE, last: (Rect::NOTHING, TSTransform::IDENTITY) }
+        Self { view: None, least: READABLE, last: (Rect::NOTHING, TSTransform::IDENTITY), revealed: None }
     }
 }
 
@@ -66,13 +68,13 @@ impl Canvas {
                 view = keyed(ui, view, drawing, panel);
             }
         }
-        // Keep a part of the drawing visible.
+        if self.revealed != lit.first().copied() {
+            self.revealed = lit.first().copied();
+            view = revealed(drawing, lit, view, panel.size());
+        }
         let [w, h] = drawing.size.map(|side| side * view.scaling);
-        let t = &mut view.translation;
-        *t = vec2(
-            t.x.clamp(60.0 - w, panel.width().max(61.0) - 60.0),
-            t.y.clamp(40.0 - h, panel.height().max(41.0) - 40.0),
-        );
+        let t = view.translation;
+        view.translation = vec2(kept(t.x, w, panel.width(), 60.0), kept(t.y, h, panel.height(), 40.0));
         if self.view.is_some() || panel.is_positive() {
             self.view = Some(view);
         }
@@ -95,22 +97,14 @@ impl Canvas {
         clicked
     }
 
-    /// Fits the whole drawing in the next frame.
+    /// Fits the whole drawing in the next frame, at any zoom.
     pub fn fit(&mut self) {
-        self.view = None;
+        (self.view, self.least) = (None, ZOOM[0]);
     }
 
-    /// Centers an item unless it is visible.
-    pub fn reveal(&mut self, drawing: &Drawing, item: Item) {
-        let (panel, to_screen) = self.last;
-        let Some(view) = &mut self.view else { return };
-        // The last area is the item itself; heads and lines come first.
-        let Some(hit) = drawing.hits.iter().rev().find(|hit| hit.item == Some(item)) else { return };
-        let [left, top, right, bottom] = hit.bounds;
-        let middle = to_screen * pos2((left + right) / 2.0, (top + bottom) / 2.0);
-        if !panel.contains(middle) {
-            view.translation += panel.center() - middle;
-        }
+    /// Returns the zoom of the last frame.
+    pub fn zoom(&self) -> f32 {
+        self.last.1.scaling
     }
 
     /// Returns the last screen position of an item; `None` if it is not visible.
@@ -121,6 +115,25 @@ impl Canvas {
             Some(to_screen * pos2((left + right) / 2.0, (top + bottom) / 2.0)).filter(|place| panel.contains(*place))
         })
     }
+}
+
+/// Limits the position of a drawing along one axis so that at least `margin` points of it stay in the panel.
+fn kept(position: f32, drawing: f32, panel: f32, margin: f32) -> f32 {
+    // A drawing or a panel smaller than the margin stays visible as a whole.
+    let margin = margin.min(drawing).min(panel);
+    position.min(panel - margin).max(margin - drawing)
+}
+
+/// Centers the first lit item that the drawing shows, unless it is visible.
+fn revealed(drawing: &Drawing, lit: &[Item], view: TSTransform, panel: Vec2) -> TSTransform {
+    // The last area is the item itself; heads and lines come first.
+    let shown = |item: &Item| drawing.hits.iter().rev().find(|hit| hit.item == Some(*item));
+    let Some([left, top, right, bottom]) = lit.iter().find_map(shown).map(|hit| hit.bounds) else { return view };
+    let middle = view * pos2((left + right) / 2.0, (top + bottom) / 2.0);
+    if Rect::from_min_size(Pos2::ZERO, panel).contains(middle) {
+        return view;
+    }
+    TSTransform::new(view.translation + (panel / 2.0 - middle.to_vec2()), view.scaling)
 }
 
 /// Fits the drawing into the panel at a zoom between `least` and 1.
@@ -165,4 +178,22 @@ fn keyed(ui: &Ui, view: TSTransform, drawing: &Drawing, panel: Rect) -> TSTransf
         view = zoomed(view, 0.8, middle);
     }
     view
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_the_drawing_stays_in_panels_of_every_size() {
+        for drawing in [0.0, 1.0, 30.0, 5000.0] {
+            for panel in [0.0, 1.0, 21.0, 60.0, 7680.0] {
+                for position in [-1e9, -1.0, 0.0, 1e9] {
+                    let at = kept(position, drawing, panel, 60.0);
+                    let seen = (at + drawing).min(panel) - at.max(0.0);
+                    assert!(seen >= drawing.min(panel).min(60.0) - 0.01, "{drawing} {panel} {position}: {at}");
+                }
+            }
+        }
+    }
 }

@@ -4,8 +4,17 @@ use crate::drawing::{Ink, Item};
 use crate::view::inspector::{Line, Section, text};
 use egui::{Label, RichText, ScrollArea, Ui};
 
-/// Shows the sections and returns the item of a clicked link.
-pub fn inspector(ui: &mut Ui, sections: &[Section]) -> Option<Item> {
+/// Target of a link.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Link {
+    /// Item of the plan.
+    Item(Item),
+    /// Source location as `PATH:LINE`.
+    Source(String),
+}
+
+/// Shows the sections and returns a clicked link.
+pub fn inspector(ui: &mut Ui, sections: &[Section]) -> Option<Link> {
     let mut clicked = None;
     if ui.small_button("Copy").on_hover_text("Copy everything as text").clicked() {
         ui.ctx().copy_text(text(sections));
@@ -23,7 +32,13 @@ pub fn inspector(ui: &mut Ui, sections: &[Section]) -> Option<Item> {
                     Line::Plain(text) => _ = ui.add(Label::new(text).wrap()),
                     Line::Link(item, text) => {
                         if ui.link(text).clicked() {
-                            clicked = Some(*item);
+                            clicked = Some(Link::Item(*item));
+                        }
+                    }
+                    Line::Source(place) => {
+                        let tip = "Open in the editor of VISUAL or EDITOR, or in Visual Studio Code";
+                        if ui.link(format!("declared at {place}")).on_hover_text(tip).clicked() {
+                            clicked = Some(Link::Source(place.clone()));
                         }
                     }
                     Line::Hint(text) => {

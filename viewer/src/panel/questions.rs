@@ -44,6 +44,8 @@ impl Questions {
         let before = self.asked.clone();
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             Grid::new("what_if").num_columns(2).show(ui, |ui| self.rows(ui, shown));
+            // Outside of the grid, whose cells do not wrap.
+            self.sizes(ui, shown);
             if let Some(refused) = &self.refused {
                 ui.label(egui::RichText::new(refused).color(ui.visuals().error_fg_color));
             }
@@ -87,21 +89,12 @@ impl Questions {
         }
         ui.end_row();
         let label = ui.label("size").id;
-        let frame = self.asked.frame.or(shown.base.map(|plan| plan.form.frame)).unwrap_or([1920, 1080]);
-        ui.vertical(|ui| {
+        let frame = self.frame(shown);
+        ui.horizontal(|ui| {
             let mut size = frame;
-            ui.horizontal(|ui| {
-                for side in &mut size {
-                    ui.add(DragValue::new(side).range(1..=16384).speed(8.0)).labelled_by(label);
-                }
-            });
-            ui.horizontal_wrapped(|ui| {
-                for (name, texels) in SIZES {
-                    if ui.selectable_label(size == texels, name).clicked() {
-                        size = texels;
-                    }
-                }
-            });
+            for side in &mut size {
+                ui.add(DragValue::new(side).range(1..=16384).speed(8.0)).labelled_by(label);
+            }
             if size != frame {
                 self.asked.frame = Some(size);
             }
@@ -140,6 +133,23 @@ impl Questions {
             }
             ui.end_row();
         }
+    }
+
+    /// Returns the requested frame size.
+    fn frame(&self, shown: Shown<'_>) -> [u32; 2] {
+        self.asked.frame.or(shown.base.map(|plan| plan.form.frame)).unwrap_or([1920, 1080])
+    }
+
+    /// Shows common sizes.
+    fn sizes(&mut self, ui: &mut Ui, shown: Shown<'_>) {
+        let size = self.frame(shown);
+        ui.horizontal_wrapped(|ui| {
+            for (name, texels) in SIZES {
+                if ui.selectable_label(size == texels, name).clicked() {
+                    self.asked.frame = Some(texels);
+                }
+            }
+        });
     }
 
     fn features(&mut self, ui: &mut Ui) {

@@ -1,5 +1,6 @@
 //! Rows of a plan with lookup by name.
 
+use super::part::part_bytes;
 use super::rows::{Access, Attachment, Form, Step};
 use framegraph::Plan;
 use std::collections::HashMap;
@@ -44,12 +45,13 @@ impl PlanData {
         self.resources.get(name).copied()
     }
 
-    /// Returns the bytes that shaders and copies of a step read from memory, each texture and buffer once and completely.
+    /// Returns the bytes that shaders and copies of a step read from memory, each part of a texture or buffer once and
+    /// completely.
     ///
     /// Sampled, fetched, storage and copy reads count, unless the data stays in the tile. Attachment loads are counted
     /// separately ([`Step::unresolve_bytes`]).
     pub fn fetched_bytes(&self, step: &Step) -> u64 {
-        let mut read: Vec<usize> = Vec::new();
+        let mut read: Vec<(usize, Option<&str>)> = Vec::new();
         for pass in step.passes.iter().filter_map(|name| self.pass(name)) {
             let pass = &self.form.passes[pass];
             let in_tile = matches!(pass.join.as_deref(), Some("same_pixel" | "inlined"));
@@ -59,12 +61,17 @@ impl PlanData {
                 "storage_write" => access.mode == "modify",
                 _ => false,
             };
-            let names = pass.accesses.iter().filter(from_memory);
-            read.extend(names.filter_map(|access| self.resource(&access.resource)));
+            let accesses = pass.accesses.iter().filter(from_memory);
+            read.extend(accesses.filter_map(|a| Some((self.resource(&a.resource)?, a.part.as_deref()))));
         }
         read.sort_unstable();
         read.dedup();
-        read.iter().fold(0, |sum: u64, r| sum.saturating_add(self.form.resources[*r].bytes))
+        let of_resource = read.chunk_by(|a, b| a.0 == b.0);
+        of_resource.fold(0, |sum: u64, parts| {
+            let resource = &self.form.resources[parts[0].0];
+            let bytes = parts.iter().fold(0u64, |sum, (_, part)| sum.saturating_add(part_bytes(resource, *part)));
+            sum.saturating_add(bytes.min(resource.bytes))
+        })
     }
 
     /// Returns the attachments of a step that are this resource.

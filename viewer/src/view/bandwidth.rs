@@ -25,7 +25,7 @@ pub struct Moved {
     pub stored: u64,
     /// Multisample resolve targets.
     pub resolved: u64,
-    /// Reads by shaders and copies, each texture and buffer once.
+    /// Reads by shaders and copies, each level, layer and buffer once.
     pub fetched: u64,
 }
 
@@ -125,7 +125,7 @@ pub fn drawing(plan: &PlanData, against: Option<&PlanData>) -> Drawing {
     y += ROW + 4.0;
     for line in [
         "loaded: attachments from memory into the tile. stored: attachments from the tile to memory.",
-        "resolved: multisample resolve targets. fetched: reads by shaders and copies, each texture and buffer once.",
+        "resolved: multisample resolve targets. fetched: reads by shaders and copies, each level, layer and buffer once.",
     ] {
         drawing.text([0.0, y], 11.0, Ink::Faint, line);
         y += 17.0;

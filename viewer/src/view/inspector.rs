@@ -75,6 +75,7 @@ pub fn text(sections: &[Section]) -> String {
         for line in lines {
             out += &match line {
                 Line::Plain(text) | Line::Link(_, text) => format!("  {text}\n"),
+                Line::Source(place) => format!("  declared at {place}\n"),
                 Line::Hint(text) => format!("    hint: {text}\n"),
             };
         }
@@ -95,6 +96,7 @@ pub fn drawing(sections: &[Section], letters: usize) -> Drawing {
             let (x, ink, text) = match line {
                 Line::Plain(text) => (0.0, Ink::Text, text.clone()),
                 Line::Link(_, text) => (0.0, Ink::Better, text.clone()),
+                Line::Source(place) => (0.0, Ink::Text, format!("declared at {place}")),
                 Line::Hint(text) => (16.0, Ink::Faint, format!("hint: {text}")),
             };
             for part in wrapped(&text, letters.saturating_sub(2 * usize::from(x > 0.0))) {

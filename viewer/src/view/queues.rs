@@ -43,7 +43,7 @@ pub fn drawing(data: &PlanData, trace: Option<&TraceData>) -> Drawing {
             return drawing;
         }
     };
-    let measured = trace.and_then(|trace| medians_us(&own, trace));
+    let measured = trace.and_then(|trace| medians_us(data, &own, trace));
     say(match measured {
         Some(_) => "step times: medians of the trace",
         None => "step times: estimated from bytes at 100 GB/s; open a trace for measured times",
@@ -63,10 +63,11 @@ pub fn drawing(data: &PlanData, trace: Option<&TraceData>) -> Drawing {
 }
 
 /// Returns the median time of each step on the GPU, or else on the CPU; `None` if a step has no time.
-fn medians_us(plan: &Plan, trace: &TraceData) -> Option<Vec<f64>> {
-    let of = |step| {
-        let names = plan.passes_of(step).iter().map(|member| plan.graph().pass_name(member.pass).to_owned());
-        let times = trace.step(&names.collect::<Vec<_>>())?;
+fn medians_us(data: &PlanData, plan: &Plan, trace: &TraceData) -> Option<Vec<f64>> {
+    // The steps of both plans correspond, since only memory differs.
+    let traced = trace.steps_of(data);
+    let of = |step: framegraph::StepId| {
+        let times = (*traced.get(step.index())?)?;
         let [_, median_ms, _] = quartiles(&times.gpu_ms).or_else(|| quartiles(&times.cpu_ms))?;
         Some(median_ms * 1000.0)
     };

@@ -72,13 +72,19 @@ fn legend(drawing: &mut Drawing, y: f32) -> f32 {
 
 /// Draws medians and quartiles of step times on CPU and GPU.
 fn times(plan: &PlanData, columns: &[Column], trace: &TraceData, drawing: &mut Drawing, [names, y]: [f32; 2]) -> f32 {
+    let mut y = y;
+    if let Some(other) = trace.mismatch(plan) {
+        drawing.text([0.0, y + 8.0], SIZE, Ink::Worse, other);
+        y += ROW;
+    }
+    let traced = trace.steps_of(plan);
     for (line, side) in ["CPU ms", "GPU ms"].into_iter().enumerate() {
         let middle = y + ROW * (line as f32 + 0.5);
         drawing.aligned([names - 8.0, middle], SIZE, Align::Right, Ink::Text, format!("{side}, median"));
         for (index, column) in columns.iter().enumerate() {
             let first = index == 0 || columns[index - 1].step != column.step;
             let Some(step) = column.step.filter(|_| first).map(|s| &plan.form.steps[s]) else { continue };
-            let Some(times) = trace.step(&step.passes) else { continue };
+            let Some(times) = traced[step.index] else { continue };
             let times = if line == 0 { &times.cpu_ms } else { &times.gpu_ms };
             let Some([low, median, high]) = quartiles(times) else { continue };
             let x = names + COLUMN * index as f32;

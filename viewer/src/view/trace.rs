@@ -1,7 +1,8 @@
 //! Frame times: one bar per frame with stutters marked, and the quartiles of each step.
 
 use crate::drawing::{Align, Drawing, Ink, letters_in, shortened};
-use crate::trace_data::{STUTTER, TraceData, quartiles};
+use crate::plan_data::PlanData;
+use crate::trace_data::{STUTTER, TraceData, TracedStep, quartiles};
 
 /// Height of the bars.
 const HEIGHT: f32 = 160.0;
@@ -16,8 +17,8 @@ const NAMES: f32 = 380.0;
 /// Maximum number of drawn frames, the latest ones.
 const MAX_FRAMES: usize = 900;
 
-/// Draws frames and steps.
-pub fn drawing(trace: Option<&TraceData>) -> Drawing {
+/// Draws frames and steps, with a warning if the trace does not belong to the plan.
+pub fn drawing(trace: Option<&TraceData>, plan: &PlanData) -> Drawing {
     let mut drawing = Drawing::default();
     let Some(trace) = trace else {
         drawing.text([0.0, 10.0], SIZE, Ink::Faint, "No trace: open one written by `render SCENE --trace FILE.json`");
@@ -58,14 +59,22 @@ pub fn drawing(trace: Option<&TraceData>) -> Drawing {
     drawing.text([WIDTH + 8.0, base - HEIGHT], 11.0, Ink::Faint, format!("{max_ms:.3} ms"));
     drawing.text([WIDTH + 8.0, base], 11.0, Ink::Faint, "0 ms");
     let mut y = base + 30.0;
+    if let Some(other) = trace.mismatch(plan).filter(|_| !plan.form.steps.is_empty()) {
+        drawing.text([0.0, y], SIZE, Ink::Worse, other);
+        y += ROW;
+    }
     let columns = ["CPU 1/4", "median", "3/4 ms", "GPU 1/4", "median", "3/4 ms"];
     let right = |column: usize| NAMES + 90.0 * (column + 1) as f32;
     for (column, name) in columns.into_iter().enumerate() {
         drawing.aligned([right(column), y], SIZE, Align::Right, Ink::Faint, name);
     }
+    let name = |step: &TracedStep| match step.earlier {
+        0 => step.name.clone(),
+        earlier => format!("{} #{}", step.name, earlier + 1),
+    };
     for step in &trace.steps {
         y += ROW;
-        drawing.text([0.0, y], SIZE, Ink::Text, shortened(&step.name, letters_in(NAMES, SIZE)));
+        drawing.text([0.0, y], SIZE, Ink::Text, shortened(&name(step), letters_in(NAMES, SIZE)));
         for (side, times) in [&step.cpu_ms, &step.gpu_ms].into_iter().enumerate() {
             for (at, ms) in quartiles(times).into_iter().flatten().enumerate() {
                 drawing.aligned([right(side * 3 + at), y], SIZE, Align::Right, Ink::Text, format!("{ms:.3}"));

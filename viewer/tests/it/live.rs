@@ -35,6 +35,7 @@ pub fn viewer(screen: &Screen, document: Document, scene: &str) -> Viewer {
     assert!(live.running.is_some(), "{:?}", session.messages);
     live.options.forced = true;
     live.share = 0.1;
+    live.wait_for_frames();
     Viewer::with(session, live)
 }
 
@@ -110,6 +111,65 @@ fn an_effect_that_is_switched_off_is_not_drawn_and_undo_draws_it_again() {
     assert_eq!(plan(&harness).form.totals, now.form.totals);
 }
 
+/// The frame is planned whatever pane is visible.
+#[test]
+fn the_graph_follows_an_effect_while_the_viewport_is_hidden() {
+    let name = "the_graph_follows_an_effect_while_the_viewport_is_hidden";
+    let Some(mut harness) = harness(name, "columns") else { return };
+    let arrangement = harness.state().arrangement().expect("an arrangement");
+    // Viewport and graph stand side by side.
+    for label in ["viewport", "graph view"] {
+        assert!(harness.query_all_by_label(label).count() > 0, "{label}");
+    }
+    let before = plan(&harness);
+    // One container of tabs has every pane, so that only one is visible.
+    let state = harness.state_mut();
+    state.arrange_all_in_tabs();
+    state.turn_to(Pane::View(viewer::view::View::Graph));
+    harness.run();
+    assert_eq!(harness.query_all_by_label("settings").count(), 1, "only its tab");
+    let mut document = live(&mut harness).document().clone();
+    document.frame.settings.occlusion = None;
+    live(&mut harness).set(document, false);
+    harness.run();
+    let after = plan(&harness);
+    assert!(after.form.totals.passes < before.form.totals.passes, "the graph shows the frame without occlusion");
+    harness.state_mut().arrange(&arrangement);
+    harness.run();
+}
+
+/// Pipelines are created on another thread: the panels continue, show the progress, and *Stop* undoes the change.
+#[test]
+fn pipelines_do_not_block_the_panels() {
+    let name = "pipelines_do_not_block_the_panels";
+    let Some(mut harness) = harness(name, "columns") else { return };
+    live(&mut harness).draw_in_background();
+    let before = live(&mut harness).document().clone();
+    let mut document = before.clone();
+    document.frame.settings = Settings::with(document.frame.settings, Effect::Bloom);
+    document.frame.settings = Settings::with(document.frame.settings, Effect::Fog);
+    live(&mut harness).set(document, false);
+    let mut longest = Duration::ZERO;
+    let (mut compiled, mut stopped) = (false, false);
+    for _ in 0..2000 {
+        let begun = std::time::Instant::now();
+        harness.step();
+        longest = longest.max(begun.elapsed());
+        if live(&mut harness).doing().is_some_and(|(doing, _)| doing.contains("pipelines")) {
+            compiled = true;
+            if !std::mem::replace(&mut stopped, true) {
+                live(&mut harness).cancel();
+            }
+        } else if compiled && !live(&mut harness).wants_frame() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    println!("longest frame of the panels: {longest:?}");
+    assert!(compiled, "the frame has new pipelines");
+    assert_eq!(*live(&mut harness).document(), before, "the change is undone");
+}
+
 #[test]
 fn what_facts_drop_is_told_beside_its_switch() {
     let name = "what_facts_drop_is_told_beside_its_switch";
@@ -147,6 +207,7 @@ fn four_k_is_asked_of_the_frame_that_is_drawn() {
     let name = "four_k_is_asked_of_the_frame_that_is_drawn";
     let Some(mut harness) = harness(name, "columns") else { return };
     let before = plan(&harness).form.clone();
+    harness.state_mut().arrange_all_in_tabs();
     harness.state_mut().turn_to(Pane::WhatIf);
     harness.run();
     harness.get_by_label("4K").click();
@@ -215,10 +276,80 @@ fn looking_at_textures_changes_no_count() {
     // The preview shows the contents of the picture: more than one color.
     live(&mut harness).preview.look_at("picture");
     harness.run();
-    let found = live(&mut harness).preview.found.take().expect("a picture");
-    let first = found.picture.rgba8[..4].to_vec();
-    assert!(found.picture.rgba8.chunks(4).any(|texel| texel != first), "the picture is one color");
+    let preview = &live(&mut harness).preview;
+    let (found, picture) = (preview.found.as_ref().expect("texels"), preview.picture.as_ref().expect("a picture"));
+    let first = picture.rgba8[..4].to_vec();
+    assert!(picture.rgba8.chunks(4).any(|texel| texel != first), "the picture is one color");
     assert!(found.texel([0, 0]).is_some() && found.texel(found.texels.size).is_none());
+}
+
+/// Controls are limited to what the format has; the picture is zoomed, moved and saved.
+#[test]
+fn a_texture_is_looked_at_closely_and_saved() {
+    let name = "a_texture_is_looked_at_closely_and_saved";
+    let Some(mut harness) = harness(name, "columns") else { return };
+    harness.state_mut().turn_to(Pane::Preview);
+    let look_at = |harness: &mut Harness<'_, Viewer>, name: &str| {
+        live(harness).preview.look_at(name);
+        harness.run();
+        harness.run();
+    };
+    look_at(&mut harness, "shadow_map");
+    harness.get_by_label("distance");
+    for label in ["R", "A", "sRGB", "average"] {
+        assert_eq!(harness.query_all_by_label(label).count(), 0, "{label}: a depth map has one channel and sample");
+    }
+    let span = live(&mut harness).preview.found.as_ref().expect("texels").span;
+    assert_eq!(live(&mut harness).preview.look.range, span, "depth is stretched");
+    look_at(&mut harness, "picture");
+    assert_eq!(harness.query_all_by_label("distance").count(), 0);
+    let colored = |harness: &mut Harness<'_, Viewer>| {
+        let picture = live(harness).preview.picture.as_ref().expect("a picture");
+        picture.rgba8.chunks(4).any(|texel| texel[0] != texel[1] || texel[1] != texel[2])
+    };
+    assert!(colored(&mut harness));
+    for label in ["G", "B"] {
+        harness.get_by_label(label).click();
+        harness.run();
+    }
+    assert!(!colored(&mut harness), "the red channel alone is gray");
+    // A texel is clicked and its values stay.
+    let size = live(&mut harness).preview.found.as_ref().expect("texels").texels.size;
+    let rect = harness.get_by_label_contains("texture picture@").rect();
+    harness.hover_at(rect.center());
+    harness.run();
+    harness.drag_at(rect.center());
+    harness.drop_at(rect.center());
+    harness.run();
+    let pinned = live(&mut harness).preview.pinned.expect("a texel");
+    assert!(pinned[0].abs_diff(size[0] / 2) <= 1 && pinned[1].abs_diff(size[1] / 2) <= 1, "{pinned:?} of {size:?}");
+    harness.get_by_label_contains("pinned ");
+    // The wheel zooms, dragging moves, *Fit* resets.
+    let before = live(&mut harness).preview.pan;
+    let modifiers = egui::Modifiers::NONE;
+    let (unit, phase) = (egui::MouseWheelUnit::Point, egui::TouchPhase::Move);
+    let (delta, source) = (egui::vec2(0.0, 120.0), egui::MouseWheelSource::Wheel);
+    harness.hover_at(rect.center());
+    harness.run();
+    harness.event(egui::Event::MouseWheel { unit, delta, phase, source, modifiers });
+    harness.run();
+    let panel = [rect.width(), rect.height()];
+    let zoomed = live(&mut harness).preview.pan;
+    assert!(zoomed.zoom(size, panel) > before.zoom(size, panel));
+    harness.get_all_by_label("Fit").last().expect("the button of the texture");
+    live(&mut harness).preview.pan.fit();
+    // Saving is confirmed; an unknown extension is an error.
+    let place = folder("texture");
+    for (file, said) in [("a.png", "saved "), ("a.exr", "saved "), ("a.bmp", "unknown extension")] {
+        live(&mut harness).preview.path = place.join(file).display().to_string();
+        harness.run();
+        harness.get_all_by_label("Save").last().expect("the button of the texture").click();
+        harness.run();
+        assert!(harness.query_all_by_label_contains(said).count() > 0, "{file}");
+    }
+    let (shown, _) = framegraph_scene::picture::read_rgba8(&place.join("a.png")).expect("a picture");
+    assert_eq!(shown, size);
+    assert!(std::fs::metadata(place.join("a.exr")).is_ok_and(|file| file.len() > 100));
 }
 
 #[test]
@@ -265,6 +396,19 @@ fn settings_go_to_a_file_and_come_back() {
     harness.state_mut().open(&path, viewer::app::Role::Shown);
     harness.run();
     assert_eq!(*live(&mut harness).document(), document);
+    // Saving is confirmed, and the search finds names as they are displayed.
+    live(&mut harness).path = path.display().to_string();
+    harness.run();
+    harness.get_by_label("Save").click();
+    harness.run();
+    harness.get_by_label_contains("saved ");
+    live(&mut harness).settings.search = "LOD error px".into();
+    harness.run();
+    assert!(harness.query_all_by_label("lod error px").count() > 0);
+    assert_eq!(harness.query_all_by_label("quality").count(), 0);
+    live(&mut harness).settings.search = "no such field".into();
+    harness.run();
+    harness.get_by_label("no field matches `no such field`");
 }
 
 #[test]

@@ -9,8 +9,9 @@ use viewer::drawing::Theme;
 use viewer::offscreen::Offscreen;
 
 /// Pictures: file, size in pixels, pixels per point, pane on the left, pane in the center.
-const SHOWN: [(&str, [u32; 2], f32, Pane, Pane); 5] = [
+const SHOWN: [(&str, [u32; 2], f32, Pane, Pane); 6] = [
     ("live", [1280, 720], 1.0, Pane::Settings, Pane::Viewport),
+    ("live-what-if", [1280, 720], 1.0, Pane::WhatIf, Pane::Viewport),
     ("live-effects", [1280, 720], 1.0, Pane::Effects, Pane::Viewport),
     ("live-lens", [1280, 720], 1.0, Pane::Lens, Pane::View(viewer::view::View::Timeline)),
     ("live-large", [2560, 1440], 1.0, Pane::Scene, Pane::Viewport),
@@ -33,9 +34,9 @@ fn panels_of_a_frame_fit_their_window() {
     (live.share, live.options.forced) = (if anew { 1.0 } else { 0.25 }, false);
     let shown_here = if anew { SHOWN.to_vec() } else { test_report::share(SHOWN) };
     for (file, size, scale, left, middle) in shown_here {
+        viewer.turn_to(Pane::Preview);
         viewer.turn_to(left);
         viewer.turn_to(middle);
-        viewer.turn_to(Pane::Preview);
         let live = viewer.live.as_mut().expect("a frame");
         live.preview.look_at("shadow_map");
         live.again();

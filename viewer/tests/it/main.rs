@@ -8,6 +8,7 @@ mod panels;
 mod pictures;
 mod program;
 mod saved;
+mod sizes;
 mod views;
 mod window;
 

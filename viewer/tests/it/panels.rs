@@ -215,3 +215,95 @@ fn a_frame_is_chosen_within_a_time_and_an_option_is_seen() {
     settled(&mut harness);
     assert!(harness.query_by_label("picture").is_none());
 }
+
+/// Another file resets zoom and search and closes messages; a file that changed on disk keeps them.
+#[test]
+fn another_file_starts_afresh() {
+    let folder = folder("afresh");
+    let (first, second) = (folder.join("first.ron"), folder.join("second.ron"));
+    std::fs::copy(case("filament"), &first).expect("a file");
+    std::fs::copy(case("deferred"), &second).expect("a file");
+    let mut harness = of(session(&first));
+    harness.get_by_label("search").click();
+    harness.run();
+    let open = |harness: &mut Harness<'_, Viewer>, path| {
+        harness.state_mut().open(path, viewer::app::Role::Shown);
+        settled(harness);
+    };
+    let place = |harness: &Harness<'_, Viewer>| harness.state().place_of(View::Graph, Item::Step(0));
+    let initial = place(&harness).expect("it is in sight");
+    let middle = egui::pos2(700.0, 400.0);
+    harness.hover_at(middle);
+    harness.run();
+    harness.drag_at(middle);
+    harness.hover_at(middle + egui::vec2(50.0, 40.0));
+    harness.drop_at(middle + egui::vec2(50.0, 40.0));
+    harness.run();
+    harness.state_mut().session.say("an error".into());
+    harness.run();
+    let moved = place(&harness).expect("it is in sight");
+    assert!((moved.x - initial.x).abs() > 10.0);
+    open(&mut harness, &first);
+    assert_eq!(place(&harness), Some(moved), "the same file keeps the view");
+    assert_eq!(harness.state().session.messages.len(), 1);
+    open(&mut harness, &second);
+    assert!(harness.state().session.messages.is_empty(), "messages of the other file are closed");
+    open(&mut harness, &first);
+    assert_eq!(place(&harness), Some(initial), "zoom and position start afresh");
+    assert_eq!(harness.state().recent.len(), 2);
+    assert!(harness.state().recent[0].ends_with("first.ron"));
+}
+
+/// *Fit* shows the whole view, however large it is.
+#[test]
+fn fit_fits() {
+    let mut session = Session::new(WhatIf::on(Caps::tiler()), || {});
+    session.show(Arc::new(StandardFrame::open("ultra").expect("a preset")));
+    assert!(session.settle(Duration::from_secs(60)));
+    let mut harness = of(session);
+    let steps = harness.state().session.plan.as_ref().map_or(0, |plan| plan.form.steps.len());
+    let hidden = |harness: &Harness<'_, Viewer>| {
+        (0..steps).filter(|step| harness.state().place_of(View::Graph, Item::Step(*step)).is_none()).count()
+    };
+    assert!(hidden(&harness) > 0);
+    harness.get_by_label("Fit").click();
+    harness.run();
+    assert_eq!(hidden(&harness), 0);
+}
+
+/// A selection in the search pans the graph to it.
+#[test]
+fn a_selection_is_scrolled_to_in_every_view() {
+    let mut session = Session::new(WhatIf::on(Caps::tiler()), || {});
+    session.show(Arc::new(StandardFrame::open("ultra").expect("a preset")));
+    assert!(session.settle(Duration::from_secs(60)));
+    let mut harness = of(session);
+    let plan = harness.state().session.plan.clone().expect("a plan");
+    let last = Item::Pass(plan.form.passes.iter().rposition(|pass| !pass.culled).expect("a pass"));
+    assert_eq!(harness.state().place_of(View::Graph, last), None);
+    harness.state_mut().select(Some(last));
+    harness.run();
+    assert!(harness.state().place_of(View::Graph, last).is_some());
+}
+
+/// Without a desktop portal, *Open…* focuses the field of the path.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_file_dialog_the_path_is_typed() {
+    if std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some() {
+        return test_report::skip("without_a_file_dialog_the_path_is_typed", "this desktop may have a portal");
+    }
+    let mut harness = shown("diamond");
+    harness.get_by_label("Open…").click();
+    for _ in 0..200 {
+        harness.step();
+        if harness.query_all_by_label_contains("no file dialog").count() > 0 {
+            harness.step();
+            let mut fields = harness.query_all_by_role(egui::accesskit::Role::TextInput);
+            assert!(fields.any(|field| field.is_focused()), "the path can be typed at once");
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    panic!("no answer of the dialog: {:?}", harness.state().session.notice);
+}

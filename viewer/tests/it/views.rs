@@ -3,8 +3,10 @@
 use crate::{planned, plans, trace_of};
 use framegraph::Caps;
 use viewer::drawing::{Align, Drawing, Item, LINE, Shape, Theme, svg, text_width};
+use viewer::standard_frame::StandardFrame;
 use viewer::trace_data::{quartiles, read};
 use viewer::view::{View, ViewContext, bandwidth, drawing, graph, inspector};
+use viewer::what_if::{Planner, WhatIf};
 
 /// Returns the bounds of each horizontal text.
 fn texts(drawing: &Drawing) -> Vec<([f32; 4], &str)> {
@@ -118,6 +120,19 @@ fn bytes_by_step_are_those_of_the_plan() {
     let grade = &plan.form.passes[plan.pass("grade").expect("a pass")];
     let step = &plan.form.steps[grade.step.expect("it runs")];
     assert_eq!(bandwidth::of_step(&plan, step).fetched, 1920 * 1080 * 8);
+    // A downsampling pass reads one level, not the whole chain.
+    let pyramid = planned("mip_pyramid", &Caps::desktop(), &[]);
+    let (pass, access) = pyramid
+        .form
+        .passes
+        .iter()
+        .find_map(|pass| {
+            Some((pass, pass.accesses.iter().find(|a| a.mode == "read" && a.part.as_deref() == Some("mip 1"))?))
+        })
+        .expect("a pass reads level 1");
+    let resource = &pyramid.form.resources[pyramid.resource(&access.resource).expect("a resource")];
+    let fetched = bandwidth::of_step(&pyramid, &pyramid.form.steps[pass.step.expect("it runs")]).fetched;
+    assert!(fetched > 0 && 4 * fetched < resource.bytes, "{fetched} of {}", resource.bytes);
     // The following filter samples 8 bits per channel.
     let fxaa = &plan.form.passes[plan.pass("fxaa").expect("a pass")];
     let step = &plan.form.steps[fxaa.step.expect("it runs")];
@@ -179,7 +194,7 @@ fn a_trace_gives_quartiles_and_stutters() {
     let trace = read(trace_of(&plan, 12, 6).as_bytes()).expect("a trace");
     assert_eq!(trace.frames.len(), 12);
     assert_eq!(trace.stutters().iter().map(|frame| frame.number).collect::<Vec<_>>(), [6]);
-    let step = trace.step(&plan.form.steps[0].passes).expect("the step");
+    let step = trace.steps_of(&plan)[0].expect("the step");
     assert_eq!((step.cpu_ms.len(), step.gpu_ms.len()), (11, 11), "the frame that warms up does not count");
     let [low, median, high] = quartiles(&step.cpu_ms).expect("there are times");
     assert!(0.0100 <= low && low < median && median < high && high <= 0.0108, "{low} {median} {high}");
@@ -188,6 +203,56 @@ fn a_trace_gives_quartiles_and_stutters() {
     let beside = ViewContext { trace: Some(&trace), ..ViewContext::default() };
     assert!(drawing(View::Timeline, &plan, beside, 80).words().contains("0.01"), "the median of the step");
     assert!(drawing(View::Trace, &plan, beside, 80).words().contains("1 stutters"));
+}
+
+/// Steps of equal names have times of their own, and a trace of another frame is reported.
+#[test]
+fn times_are_those_of_a_step_and_not_of_a_name() {
+    let plan = planned("filament", &Caps::tiler(), &["shadows"]);
+    let text = trace_of(&plan, 4, 9).replace("shadow/0", "cascade").replace("shadow/1", "cascade");
+    let trace = read(text.as_bytes()).expect("a trace");
+    assert_eq!(trace.steps.iter().filter(|step| step.name == "cascade").count(), 2);
+    let said = trace.mismatch(&plan).expect("two steps have other names");
+    assert!(said.contains("2 of ") && said.contains("`shadow/0`"), "{said}");
+    let words = |trace| {
+        let beside = ViewContext { trace: Some(trace), ..ViewContext::default() };
+        [View::Timeline, View::Trace].map(|view| drawing(view, &plan, beside, 80).words())
+    };
+    assert!(words(&trace).iter().all(|words| words.contains("of another frame")), "{:?}", words(&trace));
+    let own = read(trace_of(&plan, 4, 9).as_bytes()).expect("a trace");
+    assert_eq!(own.mismatch(&plan), None);
+    assert!(words(&own).iter().all(|words| !words.contains("of another frame")));
+    // Three cascades of one name.
+    let plan = StandardFrame::open("ultra").and_then(|frame| frame.plan(&WhatIf::on(Caps::tiler()))).expect("a plan");
+    let names: Vec<_> = plan.form.steps.iter().map(|step| step.passes.join(" + ")).collect();
+    let twice = names.iter().position(|name| name.ends_with("#2")).expect("a second step of one name");
+    let first = names.iter().position(|name| *name == names[twice].replace("#2", "")).expect("the first");
+    let event = |name: &str, us: u32| {
+        format!(r#"{{"name":"{name}","ph":"X","pid":1,"tid":2,"ts":0,"dur":{us},"args":{{"frame":1}}}}"#)
+    };
+    let mut events = vec![r#"{"name":"thread_name","ph":"M","pid":1,"tid":1,"args":{"name":"frames"}}"#.to_owned()];
+    events.push(r#"{"name":"frame 1","ph":"X","pid":1,"tid":1,"ts":0,"dur":9,"args":{}}"#.to_owned());
+    let plain = names[twice].replace("#2", "");
+    events.extend([event(&plain, 1000), event(&plain, 3000)]);
+    let trace = read(format!("{{\"traceEvents\":[{}]}}", events.join(",")).as_bytes()).expect("a trace");
+    let times = trace.steps_of(&plan);
+    let ms = |step: usize| times[step].map(|step| step.cpu_ms.clone());
+    assert_eq!((ms(first), ms(twice)), (Some(vec![1.0]), Some(vec![3.0])));
+}
+
+/// A shadow map cannot be read at the same pixel: it has another size than the frame.
+#[test]
+fn hints_that_cannot_apply_are_not_shown() {
+    let plan = StandardFrame::open("high").and_then(|frame| frame.plan(&WhatIf::on(Caps::tiler()))).expect("a plan");
+    let stored = |name: &str| {
+        let stored = plan.form.decisions.iter().filter(|d| d.reason == "store_read_by");
+        let of = stored.filter(|d| d.resource.as_deref().is_some_and(|resource| resource.ends_with(name)));
+        of.map(|d| d.hint.clone()).collect::<Vec<_>>()
+    };
+    let maps = stored("shadow_map");
+    assert!(!maps.is_empty() && maps.iter().all(Option::is_none), "{maps:?}");
+    let all: Vec<_> = plan.form.decisions.iter().filter(|d| d.reason == "store_read_by" && d.hint.is_some()).collect();
+    assert!(!all.is_empty(), "hints that can apply are shown");
 }
 
 #[test]

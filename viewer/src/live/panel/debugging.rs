@@ -47,24 +47,14 @@ fn bisecting(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         let tip = "Draw the frame in each debug mode and list those that change the picture";
         let begin = ui.add_enabled(can.is_some(), egui::Button::new("Compare")).on_hover_text(tip).clicked();
         if let Some((_, size_px)) = can.filter(|_| begin) {
-            live.bisecting = Some(Bisecting::new(live.document().clone(), &live.options, size_px));
+            live.bisect(Bisecting::new(live.document().clone(), &live.options, size_px), session);
         }
         if live.bisecting.is_some() && ui.button("Close").clicked() {
             live.bisecting = None;
             live.again();
         }
     });
-    let (Some(bisecting), Some(running)) = (&mut live.bisecting, &mut live.running) else { return };
-    if !bisecting.is_done() {
-        ui.add(egui::ProgressBar::new(bisecting.progress()).show_percentage());
-        if let Err(error) = bisecting.step(running) {
-            session.say(error);
-            live.bisecting = None;
-        }
-        live.again();
-        ui.ctx().request_repaint();
-        return;
-    }
+    let Some(bisecting) = &mut live.bisecting else { return };
     let theme = theme(ui);
     Grid::new("outcomes").num_columns(4).striped(true).show(ui, |ui| {
         for heading in ["mode", "picture", "pixels", "max difference"] {

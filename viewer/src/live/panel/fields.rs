@@ -37,10 +37,11 @@ impl Fields<'_> {
         }
     }
 
-    /// Returns whether the name of a field or of a descendant matches the search.
-    fn is_found(&self, path: &str, node: &Node) -> bool {
-        let search = self.search.trim();
-        path.contains(search)
+    /// Returns whether the displayed name of a field or of a descendant, with its groups, contains all search words.
+    pub fn is_found(&self, path: &str, node: &Node) -> bool {
+        let shown = path.replace(['_', '.'], " ").to_lowercase();
+        let mut words = self.search.split_whitespace().map(|word| word.replace(['_', '.'], " ").to_lowercase());
+        words.all(|word| shown.contains(&word))
             || node.children().iter().any(|(name, child)| self.is_found(&format!("{path}.{name}"), child))
     }
 

@@ -96,7 +96,7 @@ fn exposure(ui: &mut Ui, live: &Live, capture: &mut Capture) {
 }
 
 fn focal(ui: &mut Ui, live: &Live, capture: &mut Capture) {
-    let own = live.running.as_ref().and_then(|running| running.rig.fov_y_rad()).map(focal_length_mm);
+    let own = live.rig.as_ref().and_then(|rig| rig.fov_y_rad()).map(focal_length_mm);
     let Some(own) = own else { return };
     let mut mm = capture.focal_length_mm.unwrap_or(own);
     let label = ui.label("focal length").id;

@@ -16,7 +16,10 @@ const ENDINGS: [&str; 6] = ["gltf", "glb", "hdr", "exr", "ktx", "ktx2"];
 pub fn scene(ui: &mut Ui, live: &mut Live, path: &mut String, session: &mut crate::session::Session) {
     open(ui, live, path, session);
     ui.separator();
-    let Some(running) = &live.running else { return };
+    let Some(running) = &live.running else {
+        ui.label(live.doing().map_or("No scene", |_| "Waiting for the frame"));
+        return;
+    };
     let loaded = &running.loaded;
     let scene = &loaded.scene;
     ui.label(format!(
@@ -165,7 +168,7 @@ fn animation(ui: &mut Ui, live: &mut Live) {
 }
 
 fn cameras(ui: &mut Ui, live: &mut Live) {
-    let Some(running) = &mut live.running else { return };
+    let (Some(running), Some(rig)) = (&live.running, &mut live.rig) else { return };
     let cameras: Vec<Camera> = running.loaded.scene.cameras.clone();
     if cameras.is_empty() {
         return;
@@ -176,7 +179,7 @@ fn cameras(ui: &mut Ui, live: &mut Live) {
         for (number, camera) in cameras.iter().enumerate() {
             let name = if camera.name.is_empty() { number.to_string() } else { camera.name.clone() };
             if ui.small_button(name).on_hover_text("Use this camera").clicked() {
-                running.rig.take(camera);
+                rig.take(camera);
                 taken = true;
             }
         }

@@ -19,6 +19,9 @@ pub fn settings(ui: &mut Ui, live: &mut Live) {
     if let Some(refused) = &panel.refused {
         ui.label(RichText::new(refused).color(ui.visuals().error_fg_color));
     }
+    if let Some(saved) = &panel.saved {
+        ui.label(saved);
+    }
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let mut document = live.document().clone();
         let post = &mut document.frame.settings.post;
@@ -41,7 +44,14 @@ fn fields(panel: &mut SettingsPanel, ui: &mut Ui, live: &mut Live) {
     }
     let Some((_, node)) = &panel.tree else { return };
     let mut changed = node.clone();
-    Fields { search: &panel.search }.children(ui, "", &mut changed);
+    let shown = Fields { search: &panel.search };
+    if !shown.is_found("", node) {
+        ui.label(format!("no field matches `{}`", panel.search.trim()));
+    }
+    shown.children(ui, "", &mut changed);
+    if changed != *node {
+        panel.saved = None;
+    }
     if changed == *node {
         if !goes_on(ui.ctx()) {
             live.history.finish();
@@ -101,7 +111,9 @@ fn bar(ui: &mut Ui, live: &mut Live) {
             };
         }
         if ui.add_enabled(named, egui::Button::new("Save")).on_hover_text("Save every field as RON").clicked() {
-            live.settings.refused = live.save(&path).err();
+            let saved = live.save(&path);
+            live.settings.saved = saved.is_ok().then(|| format!("saved {}", path.display()));
+            live.settings.refused = saved.err();
         }
     });
 }

@@ -26,13 +26,14 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         live.again();
     }
     live.draw(size_px, session);
-    match live.running.as_ref().and_then(|running| running.picture()) {
+    match live.picture() {
         Some((id, _)) => {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter().image(id, rect, whole, Color32::WHITE);
             // Drawn over the picture, because a growing text line would change its size and thereby the measurement.
             let font = egui::FontId::monospace(11.0);
-            let words = ui.painter().layout_no_wrap(statistics(live), font, Color32::WHITE);
+            let width = (rect.width() - 12.0).max(1.0);
+            let words = ui.painter().layout(statistics(live), font, Color32::WHITE, width);
             let at = rect.left_bottom() + vec2(6.0, -6.0 - words.size().y);
             let behind = Rect::from_min_size(at, words.size()).expand(3.0);
             ui.painter().rect_filled(behind, 2.0, Color32::from_black_alpha(170));
@@ -50,7 +51,7 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         }
     }
     if live.wants_frame() {
-        ui.ctx().request_repaint();
+        ui.ctx().request_repaint_after(live.next_frame());
     }
 }
 
@@ -68,7 +69,7 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
             }
             ui.separator();
         }
-        let Some(running) = &mut live.running else { return };
+        let Some(rig) = &mut live.rig else { return };
         for (mode, name, tip) in [
             (Mode::Orbit, "orbit", "Drag to orbit, right-drag to pan, wheel to zoom"),
             (
@@ -77,10 +78,10 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
                 "Drag to look around; W A S D move, Q and E move down and up, Shift is four times as fast",
             ),
         ] {
-            ui.selectable_value(&mut running.rig.mode, mode, name).on_hover_text(tip);
+            ui.selectable_value(&mut rig.mode, mode, name).on_hover_text(tip);
         }
         if ui.button("home").on_hover_text("Return to the camera of the scene").clicked() {
-            running.rig.go_home();
+            rig.go_home();
             live.again();
         }
         let tip = "Draw continuously for measurements; otherwise only after changes";
@@ -124,7 +125,7 @@ fn statistics(live: &Live) -> String {
 
 /// Moves the camera.
 fn steer(ui: &Ui, live: &mut Live, response: &egui::Response, rect: Rect) {
-    let Some(running) = &mut live.running else { return };
+    let Some(rig) = &mut live.rig else { return };
     let mut moves = Moves::default();
     let drag = response.drag_delta();
     let drag = DVec2::new(drag.x.into(), drag.y.into());
@@ -136,7 +137,7 @@ fn steer(ui: &Ui, live: &mut Live, response: &egui::Response, rect: Rect) {
     if response.hovered() || response.has_focus() || response.dragged() {
         let (scroll, passed_s) = ui.input(|i| (i.smooth_scroll_delta().y, f64::from(i.stable_dt.min(0.1))));
         moves.nearer = f64::from(scroll) / 50.0;
-        if running.rig.mode == Mode::Fly && !ui.ctx().egui_wants_keyboard_input() {
+        if rig.mode == Mode::Fly && !ui.ctx().egui_wants_keyboard_input() {
             let held = |key: Key| f64::from(u8::from(ui.input(|i| i.key_down(key))));
             let fast = if ui.input(|i| i.modifiers.shift) { 4.0 } else { 1.0 };
             let right = held(Key::D) - held(Key::A);
@@ -147,7 +148,7 @@ fn steer(ui: &Ui, live: &mut Live, response: &egui::Response, rect: Rect) {
             }
         }
     }
-    if running.rig.act(&moves) {
+    if rig.act(&moves) {
         live.again();
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
         _ => head.say("culled: does not run"),
     }
     if let Some(place) = plan.declared_at.get(index).filter(|place| !place.is_empty()) {
-        head.say(format!("declared at {place}"));
+        head.lines.push(Line::Source(place.clone()));
     }
     let mut why = Section::new("decisions");
     let of_pass = |pass: &Option<String>, name: &str| pass.as_deref() == Some(name);

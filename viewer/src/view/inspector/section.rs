@@ -10,6 +10,8 @@ pub enum Line {
     Plain(String),
     /// Hint about the change that would alter a decision.
     Hint(String),
+    /// Source location as `PATH:LINE`.
+    Source(String),
     /// Link to an item.
     Link(Item, String),
 }

@@ -26,7 +26,7 @@ pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     if moved.resolved > 0 {
         cost.say(format!("including multisample resolve targets: {}", bytes(moved.resolved)));
     }
-    cost.say(format!("fetches: at most {}, each texture and buffer once", bytes(moved.fetched)));
+    cost.say(format!("fetches: at most {}, each level, layer and buffer once", bytes(moved.fetched)));
     if let Some(peak) = plan.form.peak.as_ref().filter(|peak| peak.step == index) {
         cost.say(format!("memory peak: {}", peak.resources.join(", ")));
     }

@@ -1,0 +1,79 @@
+//! Drawings of the views, created when a view is first shown; those of large plans on a separate thread.
+
+use crate::drawing::Drawing;
+use crate::job::Job;
+use crate::plan_data::PlanData;
+use crate::session::Session;
+use crate::view::{self, View, ViewContext};
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// Characters per line in the inspector.
+const LETTERS: usize = 100;
+/// Minimum number of passes whose drawings are created on a separate thread.
+const MANY: usize = 250;
+/// Maximum time to wait for a drawing in one frame.
+const PATIENCE: Duration = Duration::from_millis(10);
+
+/// Cached drawings.
+#[derive(Default)]
+pub(super) struct Drawings {
+    made: BTreeMap<View, Drawing>,
+    jobs: BTreeMap<View, Job<Drawing>>,
+    /// Generation and times of the drawn session.
+    of: [u64; 2],
+}
+
+impl Drawings {
+    /// Drops outdated drawings.
+    pub fn refresh(&mut self, session: &Session) {
+        let now = [session.generation(), session.times()];
+        // If only times changed, views without times keep their drawings.
+        let only_times = self.of[0] == now[0];
+        let kept = |view: &View| only_times && !matches!(view, View::Timeline | View::Trace | View::Queues);
+        if self.of != now {
+            self.made.retain(|view, _| kept(view));
+            self.jobs.retain(|view, _| kept(view));
+            self.of = now;
+        }
+    }
+
+    /// Returns the drawing of a view; `None` while it is created on another thread, which calls `wake` at the end.
+    pub fn get(&mut self, view: View, session: &Session, wake: impl FnOnce() + Send + 'static) -> Option<&Drawing> {
+        if !self.made.contains_key(&view) {
+            let passes = session.plan.as_ref().map_or(0, |plan| plan.form.passes.len());
+            if passes < MANY || !view.is_of_a_plan() {
+                self.made.insert(view, drawn(view, session));
+            } else {
+                let job = self.jobs.entry(view).or_insert_with(|| background(view, session, wake));
+                let drawing = job.wait(PATIENCE)?;
+                self.jobs.remove(&view);
+                self.made.insert(view, drawing);
+            }
+        }
+        self.made.get(&view)
+    }
+
+    /// Returns an existing drawing.
+    pub fn existing(&self, view: View) -> Option<&Drawing> {
+        self.made.get(&view)
+    }
+}
+
+/// Creates the drawing of a view on this thread.
+pub(super) fn drawn(view: View, session: &Session) -> Drawing {
+    let none = PlanData::default();
+    let context = ViewContext { selected: None, ..session.context() };
+    view::drawing(view, session.plan.as_deref().unwrap_or(&none), context, LETTERS)
+}
+
+/// Creates the drawing of a view on another thread.
+fn background(view: View, session: &Session, wake: impl FnOnce() + Send + 'static) -> Job<Drawing> {
+    let (plan, against) = (session.plan.clone().unwrap_or_default(), session.compared().cloned());
+    let (trace, accuracy, budget_ms) = (session.trace.clone(), session.accuracy.clone(), session.budget_ms);
+    Job::start(format!("drawing {}", view.word()), wake, move |_| {
+        let (trace, accuracy) = (trace.as_deref(), accuracy.as_deref());
+        let context = ViewContext { against: against.as_deref(), trace, accuracy, budget_ms, selected: None };
+        view::drawing(view, &plan, context, LETTERS)
+    })
+}
