@@ -26,7 +26,7 @@ impl Gpu {
         if options.alias != Alias::Heap {
             return Ok(());
         }
-        let mut caps = caps.clone();
+        let mut caps = Caps { texture_alignment_bytes: 1, buffer_alignment_bytes: 1, ..caps.clone() };
         for (id, row) in graph.resource_ids().zip(plan.resources()) {
             if !matches!(row.placement, Placement::Heap { .. }) {
                 continue;

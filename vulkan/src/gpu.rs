@@ -82,6 +82,9 @@ pub(crate) struct Shared {
     pub(crate) features: DeviceFeatures,
     pub(crate) properties: vk::PhysicalDeviceProperties,
     depth_resolves: vk::ResolveModeFlags,
+    /// Owner of the device, if it is to be kept open.
+    #[cfg(feature = "testing")]
+    keep: Option<Arc<dyn std::any::Any + Send + Sync>>,
 }
 
 impl std::fmt::Debug for Gpu {
@@ -121,8 +124,28 @@ impl Gpu {
         };
         let driver = Driver::new(instance, device, features, memory);
         let (instance, queues) = (instance.clone(), queues.to_vec());
-        let shared = Shared { instance, physical, driver, queues, families, features, properties, depth_resolves };
+        let shared = Shared {
+            instance,
+            physical,
+            driver,
+            queues,
+            families,
+            features,
+            properties,
+            depth_resolves,
+            #[cfg(feature = "testing")]
+            keep: None,
+        };
         Self { shared: Arc::new(shared) }
+    }
+
+    /// Keeps the owner of the device alive as long as the device is used. Has no effect on a device with clones.
+    #[cfg(feature = "testing")]
+    pub(crate) fn keeping(mut self, owner: Arc<dyn std::any::Any + Send + Sync>) -> Self {
+        if let Some(shared) = Arc::get_mut(&mut self.shared) {
+            shared.keep = Some(owner);
+        }
+        self
     }
 
     /// Returns the name of the device.

@@ -65,6 +65,15 @@ impl Imports {
         }
     }
 
+    /// Returns the image bound to an import; `None` for a buffer or an import that is not bound.
+    #[must_use]
+    pub fn bound_image(&self, import: ResourceId) -> Option<vk::Image> {
+        match self.rows.get(&import)?.thing {
+            Thing::Image(image) => Some(image),
+            Thing::Buffer(_) => None,
+        }
+    }
+
     /// Waits for a binary semaphore before the frame, for example that of a swapchain image.
     ///
     /// # Safety

@@ -18,6 +18,8 @@ mod resources;
 mod run;
 mod shape;
 mod subpass;
+#[cfg(feature = "testing")]
+pub mod testing;
 mod timing;
 mod views;
 

@@ -32,10 +32,13 @@ impl Shape {
             (Desc::Texture(desc), Some(format)) => Desc::Texture(desc.format(format)),
             (desc, _) => desc,
         };
+        // The engine samples or copies what outlives the frame.
+        let outlives = plan.resources()[current.index()].placement == Placement::Own;
+        let more = if outlives { Usage::SAMPLED.union(Usage::COPY_SOURCE) } else { Usage::NONE };
         Self {
             desc,
             frame: plan.frame(),
-            usage,
+            usage: usage.union(more),
             srgb_views,
             memoryless: plan.resources()[current.index()].placement == Placement::Memoryless,
             cleared: matches!(graph.resources()[current.index()].kind, Kind::HistoryCurrent { .. }),

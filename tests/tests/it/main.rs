@@ -73,4 +73,3 @@ mod transparency;
 mod upscale;
 mod velocity;
 mod views;
-mod vulkan;

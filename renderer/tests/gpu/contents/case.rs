@@ -124,7 +124,8 @@ impl Runner {
     fn binds(&self, graph: &Graph, pass: PassId) -> bool {
         let (inputs, limits) = (spec::inputs(graph, pass), self.gpu.device.limits());
         let count = |of: fn(&Class) -> bool| inputs.iter().filter(|i| of(&i.class)).count() as u32;
-        count(|c| matches!(c, Class::Texture(..))) <= limits.max_sampled_textures_per_shader_stage
+        count(|c| matches!(c, Class::Texture(..) | Class::SamePixel(..)))
+            <= limits.max_sampled_textures_per_shader_stage
             && count(|c| matches!(c, Class::Storage(_))) < limits.max_storage_textures_per_shader_stage
             && count(|c| *c == Class::Buffer) + 1 < limits.max_storage_buffers_per_shader_stage
             && count(|c| *c == Class::Uniform) < limits.max_uniform_buffers_per_shader_stage

@@ -3,7 +3,7 @@
 //!
 //! A shader pass combines its inputs to one number, its *digest*. It samples [`LOOKS`](super::code::LOOKS) texels of
 //! every level, layer and plane, words of every buffer, and indirect arguments. Each texel that it writes is a hash of
-//! digest, output and position.
+//! digest, output, position, and of the texels that it reads at the same pixel.
 //!
 //! Writes that keep older contents (`Modify`), or start from a clear value, write one texel in four. Read-only depth
 //! selects between two values. Copy passes copy.
@@ -22,6 +22,10 @@ pub enum Class {
     Buffer,
     /// 64 bytes of a uniform buffer.
     Uniform,
+    /// A plane of a texture that is read at the pixel of the fragment; multisampled or not. No part of the digest.
+    SamePixel(Numeric, bool),
+    /// A same-pixel read that stays in the tile. The shader reads an input attachment.
+    InTile(Numeric, bool),
 }
 
 /// One shader input of a pass.
@@ -52,7 +56,8 @@ pub fn inputs(graph: &Graph, pass: PassId) -> Vec<Input> {
             (AccessKind::Sampled | AccessKind::SamePixel, Desc::Texture(desc)) => {
                 for plane in planes_of(desc.format, row.range.aspect) {
                     let numeric = coding(desc.format, plane).numeric;
-                    inputs.push(input(Class::Texture(numeric, desc.samples > 1), plane, 0, 0));
+                    let class = if row.kind == AccessKind::SamePixel { Class::SamePixel } else { Class::Texture };
+                    inputs.push(input(class(numeric, desc.samples > 1), plane, 0, 0));
                 }
             }
             (AccessKind::StorageRead, Desc::Texture(desc)) => {
@@ -95,7 +100,9 @@ pub fn unobserved(graph: &Graph, pass: PassId) -> usize {
     let spare = |kind| accesses.iter().filter(|a| a.kind == kind).count();
     let indirect = spare(AccessKind::Indirect).saturating_sub(1);
     let untested = if draws_color { 0 } else { spare(AccessKind::DepthReadOnly) };
-    indirect + untested + spare(AccessKind::Vertex) + spare(AccessKind::Index)
+    let attached = accesses.iter().any(|a| matches!(a.kind, AccessKind::Color | AccessKind::Depth));
+    let same_pixel = if attached { 0 } else { spare(AccessKind::SamePixel) };
+    indirect + untested + same_pixel + spare(AccessKind::Vertex) + spare(AccessKind::Index)
 }
 
 /// Returns the planes of a format that an aspect selects.

@@ -1,0 +1,6 @@
+//! Tests on the available Vulkan device, with synchronization validation.
+
+mod bench;
+mod faults;
+mod frames;
+mod queues;
