@@ -13,6 +13,7 @@ use framegraph::{Attachment, ClearValue, Format, LoadOp, PassKind, Plan, Range, 
 impl Run<'_> {
     /// Begins a step on a queue.
     pub(crate) fn begin(&mut self, lane: usize, step: StepId) -> Result<(), Error> {
+        self.clear_resources(lane, step)?;
         let commands = self.lanes.commands(self.gpu, self.slot, lane)?;
         self.open[lane] = Some((step, 0));
         self.executed.steps += 1;

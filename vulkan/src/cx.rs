@@ -24,7 +24,7 @@ pub type RecordError = Box<dyn std::error::Error + Send + Sync>;
 pub struct BoundImage {
     /// The image, for copies.
     pub image: vk::Image,
-    /// A view of the accessed levels, layers and planes.
+    /// A view of the accessed levels, layers and planes; null for copies.
     pub view: vk::ImageView,
     /// The layout during the pass.
     pub layout: vk::ImageLayout,
@@ -122,7 +122,7 @@ impl<'a> Cx<'a> {
         self.prepared.render_pass.unwrap_or_default()
     }
 
-    /// Index of the pass's subpass in its render pass, for pipelines.
+    /// Index of the pass's subpass in its render pass, for pipelines; 0 for compute and copies.
     #[must_use]
     pub fn subpass(&self) -> u32 {
         self.prepared.subpass_of[self.at]
@@ -192,7 +192,10 @@ impl<'a> Cx<'a> {
         let imported = self.imports.rows.contains_key(&access.resource);
         let viewed = Viewed { image, resource: access.resource, imported };
         let storage = matches!(access.kind, AccessKind::StorageRead | AccessKind::StorageWrite);
-        let view = self.views.bound(&self.gpu.shared.driver, self.plan, viewed, &access.range, storage, shape)?;
+        let view = match access.kind {
+            AccessKind::CopySource | AccessKind::CopyTarget => vk::ImageView::null(),
+            _ => self.views.bound(&self.gpu.shared.driver, self.plan, viewed, &access.range, storage, shape)?,
+        };
         let input = self.input(access);
         let layout = match input {
             Some(index) => {

@@ -39,7 +39,7 @@ impl Imports {
     /// # Safety
     /// - The image belongs to the device, and stays alive until the GPU has finished the frame.
     /// - Its extent, format, levels, layers and samples are those of the import, and its usage includes that of the
-    ///   plan ([`Plan::resources`]). It is an exclusive image of the first queue's family, or concurrent.
+    ///   plan ([`Plan::resources`]), and `TRANSFER_DST` if a pass clears it through storage. It is an exclusive image of the first queue's family, or concurrent.
     /// - It is in `layout`, and earlier work on it was submitted to the first queue or waited for.
     pub unsafe fn image(&mut self, import: ResourceId, image: vk::Image, layout: vk::ImageLayout) {
         self.rows.insert(import, Import { thing: Thing::Image(image), layout, leave: None });
@@ -71,6 +71,15 @@ impl Imports {
         match self.rows.get(&import)?.thing {
             Thing::Image(image) => Some(image),
             Thing::Buffer(_) => None,
+        }
+    }
+
+    /// Returns the buffer bound to an import; `None` for an image or an import that is not bound.
+    #[must_use]
+    pub fn bound_buffer(&self, import: ResourceId) -> Option<vk::Buffer> {
+        match self.rows.get(&import)?.thing {
+            Thing::Buffer(buffer) => Some(buffer),
+            Thing::Image(_) => None,
         }
     }
 

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod begin;
+mod clear;
 mod compile;
 mod convert;
 mod cx;

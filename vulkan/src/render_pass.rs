@@ -117,7 +117,7 @@ pub(crate) fn render_pass(
         }
         descriptions.push(row);
     }
-    let dependencies = dependencies(subpasses, multiview);
+    let dependencies = dependencies(subpasses, mask != 0);
     let info =
         vk::RenderPassCreateInfo2::default().attachments(&rows).subpasses(&descriptions).dependencies(&dependencies);
     gpu.shared.driver.render_pass(&info)

@@ -240,7 +240,7 @@ impl Resources {
                 self.report.unshared_bytes += bytes;
                 thing
             }
-            Memory::Own if shape.cleared => return self.ring(gpu, plan, id, shape, earlier),
+            Memory::Own if shape.history => return self.ring(gpu, plan, id, shape, earlier),
             Memory::Own => {
                 let thing = self.object(gpu, &shape, name)?;
                 self.report.own_bytes += self.dedicated(gpu, thing, name, false)?;

@@ -1,7 +1,7 @@
 //! Execution of the commands of one frame.
 
 use crate::cx::{Cx, RecordError};
-use crate::driver::{BufferBarrier, ImageBarrier, Object, Scope, Thing, TimelinePoint};
+use crate::driver::{BufferBarrier, Object, Scope, Thing, TimelinePoint};
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::imports::Imports;
@@ -67,7 +67,7 @@ impl Run<'_> {
         matches!(*command, Command::Release { transfer, .. } if self.transfer(transfer).from.1.is_none())
     }
 
-    fn thing(&self, id: ResourceId) -> Option<Thing> {
+    pub(crate) fn thing(&self, id: ResourceId) -> Option<Thing> {
         self.imports.rows.get(&id).map(|row| row.thing).or_else(|| self.prepared.resources.of(id))
     }
 
@@ -99,44 +99,6 @@ impl Run<'_> {
         for at in fresh {
             self.clear_ring(at)?;
         }
-        Ok(())
-    }
-
-    fn clear_ring(&mut self, at: usize) -> Result<(), Error> {
-        let ring = &mut self.prepared.resources.rings[at];
-        let Some(desc) = ring.shape.desc.texture().copied() else { return Ok(()) };
-        if !std::mem::replace(&mut ring.fresh, false) {
-            return Ok(());
-        }
-        let (things, frame) = (ring.things.clone(), ring.shape.frame);
-        let range = vk::ImageSubresourceRange {
-            aspect_mask: crate::convert::planes(desc.format, framegraph::Aspect::All),
-            level_count: desc.mip_count(frame),
-            layer_count: desc.tracked_layers(),
-            ..Default::default()
-        };
-        let target = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-        let scope = Scope {
-            from: vk::PipelineStageFlags2::ALL_COMMANDS,
-            to: vk::PipelineStageFlags2::ALL_TRANSFER,
-            to_access: vk::AccessFlags2::TRANSFER_WRITE,
-            ..Scope::default()
-        };
-        for thing in &things {
-            let Thing::Image(image) = *thing else { continue };
-            let layouts = [vk::ImageLayout::UNDEFINED, target];
-            self.lanes.rows[0].pending.images.push(ImageBarrier { scope, image, range, layouts });
-            for part in 0..parts(&desc, frame, desc.format) {
-                self.layouts.set(*thing, part, target);
-            }
-        }
-        let commands = self.commands(0)?;
-        for thing in &things {
-            if let Thing::Image(image) = *thing {
-                self.gpu.shared.driver.clear_image(commands, image, range);
-            }
-        }
-        self.lanes.rows[0].pending.memory.push(Scope::ALL);
         Ok(())
     }
 

@@ -13,7 +13,9 @@ pub(crate) struct Shape {
     pub(crate) usage: Usage,
     pub(crate) srgb_views: bool,
     pub(crate) memoryless: bool,
-    /// The object is cleared to zero before its first use.
+    /// The object is an image of a history.
+    pub(crate) history: bool,
+    /// The executor clears the object.
     pub(crate) cleared: bool,
     /// Queue families that use the object concurrently; empty if one family owns it.
     pub(crate) families: Vec<u32>,
@@ -32,6 +34,7 @@ impl Shape {
             (Desc::Texture(desc), Some(format)) => Desc::Texture(desc.format(format)),
             (desc, _) => desc,
         };
+        let history = matches!(graph.resources()[current.index()].kind, Kind::HistoryCurrent { .. });
         // The engine samples or copies what outlives the frame.
         let outlives = plan.resources()[current.index()].placement == Placement::Own;
         let more = if outlives { Usage::SAMPLED.union(Usage::COPY_SOURCE) } else { Usage::NONE };
@@ -41,7 +44,8 @@ impl Shape {
             usage: usage.union(more),
             srgb_views,
             memoryless: plan.resources()[current.index()].placement == Placement::Memoryless,
-            cleared: matches!(graph.resources()[current.index()].kind, Kind::HistoryCurrent { .. }),
+            history,
+            cleared: history || crate::clear::is_cleared(plan, id),
             families: families.to_vec(),
         }
     }
@@ -51,7 +55,10 @@ impl Shape {
         let row = &plan.slots()[slot.index()];
         let (frame, families) = (plan.frame(), families.to_vec());
         let (usage, srgb_views) = (row.usage, row.srgb_views);
-        Self { desc: row.desc, frame, usage, srgb_views, memoryless: false, cleared: false, families }
+        let mut tenants = plan.graph().resource_ids().zip(plan.resources());
+        let cleared =
+            tenants.any(|(id, row)| row.placement == Placement::Slot(slot) && crate::clear::is_cleared(plan, id));
+        Self { desc: row.desc, frame, usage, srgb_views, memoryless: false, history: false, cleared, families }
     }
 
     /// Returns the description of an image; `None` for a buffer.
@@ -93,7 +100,11 @@ impl Shape {
     /// Returns the description of a buffer; `None` for an image.
     pub(crate) fn buffer_info(&self) -> Option<vk::BufferCreateInfo<'_>> {
         let Desc::Buffer(desc) = self.desc else { return None };
-        let info = vk::BufferCreateInfo::default().size(desc.bytes(self.frame).max(4)).usage(buffer_usage(self.usage));
+        let mut usage = buffer_usage(self.usage);
+        if self.cleared {
+            usage |= vk::BufferUsageFlags::TRANSFER_DST;
+        }
+        let info = vk::BufferCreateInfo::default().size(desc.bytes(self.frame).max(4)).usage(usage);
         Some(if self.families.is_empty() {
             info
         } else {

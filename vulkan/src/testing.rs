@@ -10,7 +10,7 @@ mod mock;
 mod spirv;
 
 pub use device::{DeviceRequest, OpenError, TestDevice};
-pub use imports::imports;
+pub use imports::{WORD, imports};
 pub use kit::{Bound, DepthTest, Dispatch, Draw, Kit};
 pub use memory::Part;
 pub use mock::Mock;

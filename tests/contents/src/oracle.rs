@@ -33,8 +33,9 @@ pub struct Outcome {
 /// History images of earlier frames, newest first, by the resource that a frame writes.
 pub type Past = Vec<Vec<Contents>>;
 
-/// Runs a frame. `entry` has the contents of imports, `past` the history images of earlier frames.
-pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -> Outcome {
+/// Runs a frame. `entry` has the contents of imports, `past` the history images of earlier frames. `pixelwise` is that
+/// of [`spec::inputs`].
+pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past, pixelwise: bool) -> Outcome {
     let ids = graph.resource_ids().zip(graph.resources());
     let contents = ids.map(|(id, row)| match row.kind {
         kind @ Kind::Imported { .. } if kind.defined_on_entry() => {
@@ -47,7 +48,7 @@ pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -
         Kind::Imported { .. } | Kind::Transient | Kind::HistoryCurrent { .. } => blank(graph, id, false),
     });
     let notes = vec![[None, None]; graph.passes().len()];
-    let mut machine = Machine { graph, frame, contents: contents.collect(), notes };
+    let mut machine = Machine { graph, frame, contents: contents.collect(), notes, pixelwise };
     let digests = graph.pass_ids().map(|pass| machine.pass(pass)).collect();
     Outcome { contents: machine.contents, digests, notes: machine.notes }
 }
@@ -81,6 +82,7 @@ pub struct Machine<'g> {
     pub frame: u32,
     pub contents: Vec<Contents>,
     pub notes: Vec<[Option<Vec<u8>>; NOTES]>,
+    pixelwise: bool,
 }
 
 impl Machine<'_> {
@@ -163,7 +165,7 @@ impl Machine<'_> {
     fn digest(&self, pass: PassId, salt: u32) -> Option<u32> {
         let accesses = self.graph.accesses_of(pass);
         let mut hash = salt;
-        for input in spec::inputs(self.graph, pass) {
+        for input in spec::inputs(self.graph, pass, self.pixelwise) {
             let access = &accesses[input.access];
             hash = match input.class {
                 Class::Texture(_, samples) => {
@@ -225,10 +227,11 @@ impl Machine<'_> {
     /// Returns the texels that a pass reads at the same pixel, of the layer at `index`; `None` if some are undefined.
     fn same_pixel(&self, pass: Option<PassId>, index: u16) -> Option<Vec<Vec<Texel>>> {
         let Some(pass) = pass else { return Some(Vec::new()) };
-        let inputs = spec::inputs(self.graph, pass).into_iter();
+        let inputs = spec::inputs(self.graph, pass, self.pixelwise).into_iter();
         let texels = inputs.filter(|input| matches!(input.class, Class::SamePixel(..))).map(|input| {
             let access = &self.graph.accesses_of(pass)[input.access];
-            let layer = access.range.layer + index;
+            let layers = spec::layers(self.graph, access);
+            let layer = (access.range.layer + index).min(layers.end - 1);
             let at = part_index(self.graph, access.resource, access.range.mip, layer, input.plane);
             self.part(access.resource, at).clone()
         });

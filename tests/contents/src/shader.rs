@@ -243,7 +243,7 @@ fn same_pixel(numeric: Numeric, samples: bool, in_tile: bool, index: usize, list
     let load = match (in_tile, samples) {
         (true, _) => format!("textureLoad(t{index}, vec2i(0), 0)"),
         (_, true) => format!("textureLoad(t{index}, at, 0)"),
-        _ => format!("textureLoad(t{index}, at, layer, 0)"),
+        _ => format!("textureLoad(t{index}, at, min(layer, textureNumLayers(t{index}) - 1u), 0)"),
     };
     let codes = match numeric {
         Numeric::Float => format!("code({load}, {list}u)"),

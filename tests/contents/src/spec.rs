@@ -47,8 +47,9 @@ pub const UNIFORM_BYTES: u64 = 64;
 /// Largest offset alignment that WebGPU allows.
 const UNIFORM_ALIGNMENT: u64 = 256;
 
-/// Returns the shader inputs of a pass, in the order of its digest.
-pub fn inputs(graph: &Graph, pass: PassId) -> Vec<Input> {
+/// Returns the shader inputs of a pass, in the order of its digest. With `pixelwise`, same-pixel reads are no part of the
+/// digest, and each texel depends on the texels below it; otherwise they are read as sampled textures.
+pub fn inputs(graph: &Graph, pass: PassId, pixelwise: bool) -> Vec<Input> {
     let mut inputs = Vec::new();
     for (access, row) in graph.accesses_of(pass).iter().enumerate() {
         let input = |class, plane, mip, offset| Input { access, class, plane, mip, offset };
@@ -56,7 +57,8 @@ pub fn inputs(graph: &Graph, pass: PassId) -> Vec<Input> {
             (AccessKind::Sampled | AccessKind::SamePixel, Desc::Texture(desc)) => {
                 for plane in planes_of(desc.format, row.range.aspect) {
                     let numeric = coding(desc.format, plane).numeric;
-                    let class = if row.kind == AccessKind::SamePixel { Class::SamePixel } else { Class::Texture };
+                    let pixelwise = pixelwise && row.kind == AccessKind::SamePixel;
+                    let class = if pixelwise { Class::SamePixel } else { Class::Texture };
                     inputs.push(input(class(numeric, desc.samples > 1), plane, 0, 0));
                 }
             }
@@ -100,9 +102,7 @@ pub fn unobserved(graph: &Graph, pass: PassId) -> usize {
     let spare = |kind| accesses.iter().filter(|a| a.kind == kind).count();
     let indirect = spare(AccessKind::Indirect).saturating_sub(1);
     let untested = if draws_color { 0 } else { spare(AccessKind::DepthReadOnly) };
-    let attached = accesses.iter().any(|a| matches!(a.kind, AccessKind::Color | AccessKind::Depth));
-    let same_pixel = if attached { 0 } else { spare(AccessKind::SamePixel) };
-    indirect + untested + same_pixel + spare(AccessKind::Vertex) + spare(AccessKind::Index)
+    indirect + untested + spare(AccessKind::Vertex) + spare(AccessKind::Index)
 }
 
 /// Returns the planes of a format that an aspect selects.

@@ -234,18 +234,29 @@ impl Dependencies {
 }
 
 impl Driver {
-    /// Clears a range of an image to zero. The image is in `TRANSFER_DST_OPTIMAL`.
-    pub(crate) fn clear_image(&self, commands: vk::CommandBuffer, image: vk::Image, range: vk::ImageSubresourceRange) {
-        let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-        // SAFETY: D1, D2, D4. Images of histories have the usage; outside of a render pass.
+    /// Clears a range of an image, which is in the layout of copy targets or the general one.
+    pub(crate) fn clear_image(
+        &self,
+        commands: vk::CommandBuffer,
+        image: vk::Image,
+        layout: vk::ImageLayout,
+        range: vk::ImageSubresourceRange,
+        value: vk::ClearValue,
+    ) {
+        // SAFETY: D1, D2, D4. The image has the usage of copy targets (`Shape::cleared`); no render pass is open. Every
+        // field of the union is plain data.
         unsafe {
             if range.aspect_mask == vk::ImageAspectFlags::COLOR {
-                let zero = vk::ClearColorValue::default();
-                self.raw.cmd_clear_color_image(commands, image, layout, &zero, &[range]);
+                self.raw.cmd_clear_color_image(commands, image, layout, &value.color, &[range]);
             } else {
-                let zero = vk::ClearDepthStencilValue::default();
-                self.raw.cmd_clear_depth_stencil_image(commands, image, layout, &zero, &[range]);
+                self.raw.cmd_clear_depth_stencil_image(commands, image, layout, &value.depth_stencil, &[range]);
             }
         }
+    }
+
+    /// Fills a part of a buffer, given by offset and size in bytes, with zeros.
+    pub(crate) fn fill_buffer(&self, commands: vk::CommandBuffer, buffer: vk::Buffer, (offset, bytes): (u64, u64)) {
+        // SAFETY: D1, D4. The buffer has the usage of copy targets (`Shape::cleared`) and these bytes.
+        unsafe { self.raw.cmd_fill_buffer(commands, buffer, offset, bytes & !3, 0) };
     }
 }

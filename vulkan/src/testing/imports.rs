@@ -1,4 +1,4 @@
-//! Images and buffers for the imports of a plan, cleared to zero.
+//! Images for the imports of a plan, cleared to zero, and buffers filled with [`WORD`].
 
 #![allow(unsafe_code, reason = "imports are promises about handles")]
 
@@ -10,6 +10,9 @@ use crate::imports::Imports;
 use crate::shape::Shape;
 use ash::vk;
 use framegraph::{Aspect, Entry, Kind, Placement, Plan, ResourceId, State, Usage};
+
+/// Value of the words of imported buffers, which makes them valid indirect arguments.
+pub const WORD: u32 = 3;
 
 /// Creates an image or a buffer for each import that the plan uses. They live until [`Kit::reset`].
 ///
@@ -46,7 +49,7 @@ fn import(kit: &mut Kit, plan: &Plan, id: ResourceId, made: &mut Imports) -> Res
         kit.objects.push(Object::Buffer(buffer));
         place(kit, Thing::Buffer(buffer))?;
         // SAFETY: `once` waits for the GPU; the buffer is new, has the usage, and lives until `reset`, which waits.
-        kit.once(|driver, commands| unsafe { driver.raw.cmd_fill_buffer(commands, buffer, 0, vk::WHOLE_SIZE, 0) })?;
+        kit.once(|driver, commands| unsafe { driver.raw.cmd_fill_buffer(commands, buffer, 0, vk::WHOLE_SIZE, WORD) })?;
         // SAFETY: the buffer belongs to the device, has the size and usage of the plan, and the GPU has finished with it.
         unsafe { made.buffer(id, buffer) };
         return Ok(());
@@ -73,7 +76,7 @@ fn import(kit: &mut Kit, plan: &Plan, id: ResourceId, made: &mut Imports) -> Res
     let target = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
     kit.once(|driver, commands| {
         driver.barriers(commands, &barrier(range(None), [vk::ImageLayout::UNDEFINED, target]));
-        driver.clear_image(commands, image, range(None));
+        driver.clear_image(commands, image, target, range(None), vk::ClearValue::default());
         for number in (0..desc.format.planes()).filter(|_| state != State::Undefined) {
             let layouts = [target, layout(state, desc.format, number)];
             driver.barriers(commands, &barrier(range(Some(number)), layouts));

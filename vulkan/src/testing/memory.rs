@@ -93,6 +93,21 @@ impl Kit {
         found.map(|(_, memory)| *memory).ok_or(Error::NotPrepared)
     }
 
+    /// Copies the first bytes of a buffer of the device, which has usage `TRANSFER_SRC`, to the CPU and waits for it.
+    ///
+    /// # Errors
+    /// Fails if the device is out of memory.
+    pub fn read_buffer(&mut self, buffer: vk::Buffer, bytes: u64) -> Result<Vec<u8>, Error> {
+        let target = self.buffer(&vec![0; bytes as usize], vk::BufferUsageFlags::empty())?;
+        let region = vk::BufferCopy { size: bytes, ..Default::default() };
+        self.once(|driver, commands| {
+            driver.barriers(commands, &Dependencies { memory: vec![Scope::ALL], ..Dependencies::default() });
+            // SAFETY: the caller passes a buffer of the device with these bytes.
+            unsafe { driver.raw.cmd_copy_buffer(commands, buffer, target.buffer, &[region]) };
+        })?;
+        self.read(target, bytes as usize)
+    }
+
     /// Copies a part of an image to the CPU and waits for it. The layout stays the same.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! Tests on the available Vulkan device, with synchronization validation.
 
 mod bench;
+mod contents;
 mod faults;
 mod frames;
 mod queues;

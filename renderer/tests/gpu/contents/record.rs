@@ -94,7 +94,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         stage: &'r Stage,
         compute: bool,
     ) -> Result<Self, RecordError> {
-        let inputs = spec::inputs(graph, pass);
+        let inputs = spec::inputs(graph, pass, false);
         let mut recorder = Self { cx, graph, pass, stage, compute, inputs, bindings: Vec::new(), indirect: None };
         for index in 0..recorder.inputs.len() {
             let binding = recorder.bind(recorder.inputs[index])?;
@@ -120,7 +120,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
 
     fn bind(&mut self, input: Input) -> Result<Binding, RecordError> {
         let dimension = match input.class {
-            Class::Texture(_, true) | Class::SamePixel(_, true) => TextureViewDimension::D2,
+            Class::Texture(_, true) => TextureViewDimension::D2,
             _ => TextureViewDimension::D2Array,
         };
         let aspect = (input.plane != Aspect::All).then_some(input.plane);
@@ -293,7 +293,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         words.extend(scale.map(f32::to_bits));
         assert_eq!(words.len(), PARAMS);
         let codings = self.inputs.iter().filter_map(|i| match i.class {
-            Class::Texture(Numeric::Float, _) | Class::SamePixel(Numeric::Float, _) | Class::Storage(_) => {
+            Class::Texture(Numeric::Float, _) | Class::Storage(_) => {
                 Some(self.coding(&self.accesses()[i.access], Aspect::All)).filter(|c| c.numeric == Numeric::Float)
             }
             _ => None,
