@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::subpass::{PlaneUse, Reference, Subpass};
 use ash::vk;
-use framegraph::{Aspect, Format, Plan, StepId};
+use framegraph::{Aspect, Format, LoadOp, Plan, StepId, StoreOp};
 
 /// Layouts of an attachment in its step: color or depth, then stencil.
 pub(crate) type StepLayouts = [vk::ImageLayout; 2];
@@ -26,6 +26,22 @@ const USES: vk::AccessFlags = vk::AccessFlags::from_raw(
         | vk::AccessFlags::COLOR_ATTACHMENT_READ.as_raw()
         | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ.as_raw(),
 );
+
+/// Returns `true` for layouts of planes that the step does not write. The plan has planes without a use in them.
+fn is_read_only(layout: vk::ImageLayout) -> bool {
+    let depth = [vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL, vk::ImageLayout::DEPTH_READ_ONLY_OPTIMAL];
+    depth.contains(&layout) || layout == vk::ImageLayout::STENCIL_READ_ONLY_OPTIMAL
+}
+
+/// Returns the load operation of a plane. `DONT_CARE` would write a plane without a use.
+fn load_op(op: LoadOp, layout: vk::ImageLayout) -> vk::AttachmentLoadOp {
+    load(if op == LoadOp::DontCare && is_read_only(layout) { LoadOp::Load } else { op })
+}
+
+/// Returns the store operation of a plane. `DONT_CARE` would write a plane without a use.
+fn store_op(op: StoreOp, layout: vk::ImageLayout, has_none: bool) -> vk::AttachmentStoreOp {
+    store(if op == StoreOp::Discard && is_read_only(layout) { StoreOp::None } else { op }, has_none)
+}
 
 /// Returns the layout of a plane in a subpass.
 fn layout(format: Format, number: usize, usage: PlaneUse, step: vk::ImageLayout) -> vk::ImageLayout {
@@ -78,10 +94,10 @@ pub(crate) fn render_pass(
         let description = vk::AttachmentDescription2::default()
             .format(vk_format(row.view.unwrap_or(format)))
             .samples(vk::SampleCountFlags::from_raw(samples.into()))
-            .load_op(load(row.load))
-            .store_op(store(row.store, has_none))
-            .stencil_load_op(load(row.stencil_load))
-            .stencil_store_op(store(row.stencil_store, has_none))
+            .load_op(load_op(row.load, layouts[0]))
+            .store_op(store_op(row.store, layouts[0], has_none))
+            .stencil_load_op(load_op(row.stencil_load, layouts[1]))
+            .stencil_store_op(store_op(row.stencil_store, layouts[1], has_none))
             .initial_layout(layouts[0])
             .final_layout(layouts[0]);
         rows.push(if format.planes() > 1 { description.push_next(stencil) } else { description });

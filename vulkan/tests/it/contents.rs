@@ -57,7 +57,8 @@ fn random_graphs_leave_the_contents_of_the_simulation() -> TestResult {
                     let messages = device.messages();
                     let place = format!("seed {seed}, options {number}");
                     assert!(messages.is_empty(), "{place}: {}", messages[0]);
-                    assert!(verdict.differences.is_empty(), "{place}:\n{}", verdict.differences.join("\n"));
+                    let text = || framegraph::dump::text(&verdict.plan);
+                    assert!(verdict.differences.is_empty(), "{place}:\n{}\n{}", verdict.differences.join("\n"), text());
                     total.add(&verdict);
                 }
                 Err(why) => {

@@ -6,7 +6,7 @@ use super::record::Frame;
 use framegraph::{Access, Aspect, Format, Graph};
 use framegraph_vulkan::ash::vk;
 use framegraph_vulkan::{BoundBuffer, BoundImage, Cx, RecordError, ViewShape};
-use graph_contents::code::{bytes_of, coding, planes, texel_hash, word};
+use graph_contents::code::{bytes_of, coding, texel_hash, word};
 use graph_contents::copy::{Copy, NOTE_BYTES, Spot, copies};
 use graph_contents::spec;
 
@@ -76,13 +76,7 @@ impl Frame<'_> {
                 }
                 Copy::Zero { into } => {
                     let target = image(cx, &accesses[into.access])?;
-                    for plane in planes(format(into)) {
-                        let size = spec::texels(graph, accesses[into.access].resource, into.mip);
-                        let bytes = size[0] * size[1] * texel_bytes(format(into), plane);
-                        let source = self.put(&vec![0; bytes as usize])?;
-                        let to = layers(into, flags(plane, format(into)));
-                        upload(cx, source, target, region(source.offset, 0, 1, to, size));
-                    }
+                    zero(cx, target, layers(into, flags(Aspect::All, format(into))));
                 }
                 Copy::Texture { from, into, texels } => {
                     let (source, target) = (image(cx, &accesses[from.access])?, image(cx, &accesses[into.access])?);
@@ -161,6 +155,25 @@ fn buffer(cx: &Cx<'_>, from: BoundBuffer, to: BoundBuffer, size: u64) {
     let region = vk::BufferCopy { src_offset: from.offset, dst_offset: to.offset, size };
     // SAFETY: both buffers belong to the device and have these bytes.
     unsafe { cx.device().cmd_copy_buffer(cx.commands(), from.buffer, to.buffer, &[region]) };
+}
+
+fn zero(cx: &Cx<'_>, to: BoundImage, part: vk::ImageSubresourceLayers) {
+    let range = vk::ImageSubresourceRange {
+        aspect_mask: part.aspect_mask,
+        base_mip_level: part.mip_level,
+        level_count: 1,
+        base_array_layer: part.base_array_layer,
+        layer_count: 1,
+    };
+    // SAFETY: the image belongs to the device, is in the layout of copies, and has this part.
+    unsafe {
+        let (commands, layout) = (cx.commands(), to.layout);
+        if part.aspect_mask == vk::ImageAspectFlags::COLOR {
+            cx.device().cmd_clear_color_image(commands, to.image, layout, &Default::default(), &[range]);
+        } else {
+            cx.device().cmd_clear_depth_stencil_image(commands, to.image, layout, &Default::default(), &[range]);
+        }
+    }
 }
 
 /// Orders copies of one pass.
