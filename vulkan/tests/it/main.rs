@@ -4,4 +4,5 @@ mod bench;
 mod contents;
 mod faults;
 mod frames;
+mod post;
 mod queues;
