@@ -23,7 +23,7 @@ pub fn aliasing_barriers(plan: &Plan, schedule: &Schedule, shared: &SharedMemory
     let is_texture = |resource: usize| plan.graph().resources()[resource].desc.texture().is_some();
     let span = |resource: usize| {
         let begin = shared.offsets.get(resource).copied().flatten()?;
-        Some((is_texture(resource), begin, begin + plan.resources()[resource].bytes))
+        Some((is_texture(resource), begin, begin + shared.sizes[resource]))
     };
     let placed: Vec<_> = (0..accessed.len()).filter_map(|resource| Some((resource, span(resource)?))).collect();
     let mut found = Vec::new();

@@ -127,7 +127,7 @@ pub fn check_memory(plan: &Plan, schedule: &Schedule, memory: &SharedMemory) -> 
         plan.step_ids().filter(|step| accesses(plan, *step).any(|access| access.resource == resource)).collect()
     };
     let lies = |resource: ResourceId| {
-        let bytes = plan.resources()[resource.index()].bytes.max(1);
+        let bytes = memory.sizes[resource.index()].max(1);
         memory.offset(resource).map(|offset| offset..offset + bytes)
     };
     let is_texture = |resource: ResourceId| plan.graph().resources()[resource.index()].desc.texture().is_some();

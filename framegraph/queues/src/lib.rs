@@ -63,7 +63,7 @@ mod transfers;
 pub use check::{Violation, check, check_memory};
 pub use estimate::estimate_us;
 pub use layout::{Queue, QueueId, QueueLayout};
-pub use memory::{SharedMemory, share_memory};
+pub use memory::{SharedMemory, share_memory, share_memory_with};
 pub use replan::replan;
 pub use schedule::{QueueError, Schedule, Wait, schedule, schedule_with};
 pub use stream::{Command, Memory, PlanStream, stream};

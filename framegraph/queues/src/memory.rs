@@ -10,6 +10,8 @@ use framegraph::{Placement, Plan, ResourceId};
 pub struct SharedMemory {
     /// Offset of each resource in the heap of its kind; `None` for resources without transient memory.
     pub offsets: Vec<Option<u64>>,
+    /// Size of each resource in its heap, in bytes.
+    pub sizes: Vec<u64>,
     /// Sizes of the texture heap and of the buffer heap, in bytes.
     pub heap_bytes: [u64; 2],
     /// Size without sharing, in bytes.
@@ -25,11 +27,21 @@ pub struct SharedMemory {
 /// Panics if `schedule` belongs to another plan, or if `alignment` is 0.
 #[must_use]
 pub fn share_memory(plan: &Plan, schedule: &Schedule, alignment: u64) -> SharedMemory {
+    let sizes: Vec<u64> = plan.resources().iter().map(|row| row.bytes).collect();
+    share_memory_with(plan, schedule, alignment, &sizes)
+}
+
+/// Places resources like [`share_memory`], with the size of each resource in bytes, which a driver can pad.
+///
+/// # Panics
+/// Panics if `schedule` belongs to another plan, if `alignment` is 0, or if `sizes` has too few elements.
+#[must_use]
+pub fn share_memory_with(plan: &Plan, schedule: &Schedule, alignment: u64, sizes: &[u64]) -> SharedMemory {
     let accessed = accesses_by_resource(plan);
     let is_texture = |resource: usize| plan.graph().resources()[resource].desc.texture().is_some();
     let is_transient =
         |resource: &usize| matches!(plan.resources()[*resource].placement, Placement::Slot(_) | Placement::Heap { .. });
-    let bytes = |resource: usize| plan.resources()[resource].bytes.next_multiple_of(alignment);
+    let bytes = |resource: usize| sizes[resource].next_multiple_of(alignment);
     let mut all: Vec<usize> = (0..accessed.len()).filter(is_transient).collect();
     all.sort_by_key(|resource| (std::cmp::Reverse(bytes(*resource)), *resource));
     let over = |a: usize, b: usize| {
@@ -37,7 +49,8 @@ pub fn share_memory(plan: &Plan, schedule: &Schedule, alignment: u64) -> SharedM
             .iter()
             .all(|(first, _)| accessed[b].iter().all(|(second, _)| schedule.order.is_before(*first, *second)))
     };
-    let mut shared = SharedMemory { offsets: vec![None; accessed.len()], ..SharedMemory::default() };
+    let mut shared =
+        SharedMemory { offsets: vec![None; accessed.len()], sizes: sizes.to_vec(), ..SharedMemory::default() };
     for resource in &all {
         let mut taken: Vec<(u64, u64)> = all
             .iter()

@@ -6,16 +6,12 @@
 //! graphs. Stale contents are therefore detected.
 
 mod case;
-mod code;
 mod control;
-mod copy;
-mod oracle;
-mod oracle_copy;
 mod probe;
 mod record;
 mod record_copy;
-mod shader;
-mod spec;
+
+use graph_contents::{code, copy, oracle, shader, spec};
 
 use crate::bench::{TestResult, on_adapter, skip};
 use case::{Case, Runner, Verdict};

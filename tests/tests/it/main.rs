@@ -71,4 +71,3 @@ mod transparency;
 mod upscale;
 mod velocity;
 mod views;
-mod vulkan;

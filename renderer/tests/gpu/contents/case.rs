@@ -122,7 +122,7 @@ impl Runner {
 
     /// Returns whether the device can bind all inputs of a pass, its output and the witness buffer.
     fn binds(&self, graph: &Graph, pass: PassId) -> bool {
-        let (inputs, limits) = (spec::inputs(graph, pass), self.gpu.device.limits());
+        let (inputs, limits) = (spec::inputs(graph, pass, false), self.gpu.device.limits());
         let count = |of: fn(&Class) -> bool| inputs.iter().filter(|i| of(&i.class)).count() as u32;
         count(|c| matches!(c, Class::Texture(..))) <= limits.max_sampled_textures_per_shader_stage
             && count(|c| matches!(c, Class::Storage(_))) < limits.max_storage_textures_per_shader_stage
@@ -161,7 +161,7 @@ impl Runner {
                 Err(ExecuteError::Clear { .. }) => return Ok(Err("clear")),
                 Err(error) => return Err(error.to_string()),
             }
-            let outcome = oracle::run(graph, frame, &entry, &past);
+            let outcome = oracle::run(graph, frame, &entry, &past, false);
             self.compare(case, &imports, &outcome, frame, executor, &mut verdict).map_err(|e| e.to_string())?;
             for (id, row) in graph.resource_ids().zip(graph.resources()) {
                 let written = graph.versions().iter().any(|v| v.resource == id && !v.writer.is_none());
@@ -213,7 +213,7 @@ impl Runner {
         framegraph::compile(&prelude, &self.gpu.caps(), &options, &mut self.scratch, &mut plan)?;
         self.stage.frame = frame;
         self.prelude.execute(&plan, &recorded(prelude), &self.stage, &imports.bound)?;
-        let mut outcome = oracle::run(plan.graph(), frame, &[], &Vec::new());
+        let mut outcome = oracle::run(plan.graph(), frame, &[], &Vec::new(), false);
         for (resource, row) in made {
             entry[resource.index()] = Some(std::mem::replace(&mut outcome.contents[row], Contents::Buffer(None)));
         }

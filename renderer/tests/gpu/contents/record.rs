@@ -94,7 +94,7 @@ impl<'r, 'a> Recorder<'r, 'a> {
         stage: &'r Stage,
         compute: bool,
     ) -> Result<Self, RecordError> {
-        let inputs = spec::inputs(graph, pass);
+        let inputs = spec::inputs(graph, pass, false);
         let mut recorder = Self { cx, graph, pass, stage, compute, inputs, bindings: Vec::new(), indirect: None };
         for index in 0..recorder.inputs.len() {
             let binding = recorder.bind(recorder.inputs[index])?;

@@ -3,7 +3,7 @@
 //!
 //! A shader pass combines its inputs to one number, its *digest*. It samples [`LOOKS`](super::code::LOOKS) texels of
 //! every level, layer and plane, words of every buffer, and indirect arguments. Each texel that it writes is a hash of
-//! digest, output and position.
+//! digest, output, position, and of the texels that it reads at the same pixel.
 //!
 //! Writes that keep older contents (`Modify`), or start from a clear value, write one texel in four. Read-only depth
 //! selects between two values. Copy passes copy.
@@ -22,6 +22,10 @@ pub enum Class {
     Buffer,
     /// 64 bytes of a uniform buffer.
     Uniform,
+    /// A plane of a texture that is read at the pixel of the fragment; multisampled or not. No part of the digest.
+    SamePixel(Numeric, bool),
+    /// A same-pixel read that stays in the tile. The shader reads an input attachment.
+    InTile(Numeric, bool),
 }
 
 /// One shader input of a pass.
@@ -43,8 +47,9 @@ pub const UNIFORM_BYTES: u64 = 64;
 /// Largest offset alignment that WebGPU allows.
 const UNIFORM_ALIGNMENT: u64 = 256;
 
-/// Returns the shader inputs of a pass, in the order of its digest.
-pub fn inputs(graph: &Graph, pass: PassId) -> Vec<Input> {
+/// Returns the shader inputs of a pass, in the order of its digest. With `pixelwise`, same-pixel reads are no part of the
+/// digest, and each texel depends on the texels below it; otherwise they are read as sampled textures.
+pub fn inputs(graph: &Graph, pass: PassId, pixelwise: bool) -> Vec<Input> {
     let mut inputs = Vec::new();
     for (access, row) in graph.accesses_of(pass).iter().enumerate() {
         let input = |class, plane, mip, offset| Input { access, class, plane, mip, offset };
@@ -52,7 +57,9 @@ pub fn inputs(graph: &Graph, pass: PassId) -> Vec<Input> {
             (AccessKind::Sampled | AccessKind::SamePixel, Desc::Texture(desc)) => {
                 for plane in planes_of(desc.format, row.range.aspect) {
                     let numeric = coding(desc.format, plane).numeric;
-                    inputs.push(input(Class::Texture(numeric, desc.samples > 1), plane, 0, 0));
+                    let pixelwise = pixelwise && row.kind == AccessKind::SamePixel;
+                    let class = if pixelwise { Class::SamePixel } else { Class::Texture };
+                    inputs.push(input(class(numeric, desc.samples > 1), plane, 0, 0));
                 }
             }
             (AccessKind::StorageRead, Desc::Texture(desc)) => {

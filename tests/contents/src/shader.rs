@@ -99,14 +99,23 @@ impl Signature {
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> witness: array<u32>;{COMMON}"
         );
-        let (mut digest, mut list) = (String::new(), 0);
+        let (mut digest, mut same, mut list) = (String::new(), String::new(), 0);
         for (index, class) in self.inputs.iter().enumerate() {
             let binding = Self::FIRST + index as u32;
             text += &format!("@group(0) @binding({binding}) var{} t{index}: {};\n", space(*class), variable(*class));
-            text += &function(*class, index, list);
+            match *class {
+                Class::SamePixel(numeric, samples) => same += &same_pixel(numeric, samples, false, index, list),
+                Class::InTile(numeric, samples) => same += &same_pixel(numeric, samples, true, index, list),
+                _ => {
+                    text += &function(*class, index, list);
+                    let _ = writeln!(digest, "  hash = input{index}(hash);");
+                }
+            }
             list += usize::from(scaled(*class));
-            let _ = writeln!(digest, "  hash = input{index}(hash);");
         }
+        text += &format!(
+            "fn with_same(start: u32, at: vec2u, layer: u32) -> u32 {{\n  var hash = start;\n{same}  return hash;\n}}\n"
+        );
         text += &format!("fn digest() -> u32 {{\n  var hash = params.salt;\n{digest}  return mix(hash, 0u);\n}}\n");
         let binding = Self::FIRST + self.inputs.len() as u32;
         text += &match self.out {
@@ -129,7 +138,9 @@ impl Signature {
 /// Returns whether the values of an input are scaled to codes.
 fn scaled(class: Class) -> bool {
     match class {
-        Class::Texture(numeric, _) => numeric == Numeric::Float,
+        Class::Texture(numeric, _) | Class::SamePixel(numeric, _) | Class::InTile(numeric, _) => {
+            numeric == Numeric::Float
+        }
         Class::Storage(format) => format != Format::R32Uint,
         Class::Buffer | Class::Uniform => false,
     }
@@ -139,12 +150,14 @@ fn space(class: Class) -> &'static str {
     match class {
         Class::Buffer => "<storage, read>",
         Class::Uniform => "<uniform>",
-        Class::Texture(..) | Class::Storage(_) => "",
+        Class::Texture(..) | Class::Storage(_) | Class::SamePixel(..) | Class::InTile(..) => "",
     }
 }
 
 fn variable(class: Class) -> String {
     match class {
+        Class::SamePixel(numeric, samples) => variable(Class::Texture(numeric, samples)),
+        Class::InTile(numeric, samples) => variable(Class::Texture(numeric, samples)).replace("_array", ""),
         Class::Texture(Numeric::Float, false) => "texture_2d_array<f32>".into(),
         Class::Texture(Numeric::Float, true) => "texture_multisampled_2d<f32>".into(),
         Class::Texture(Numeric::Uint | Numeric::Stencil, false) => "texture_2d_array<u32>".into(),
@@ -220,8 +233,24 @@ fn function(class: Class, index: usize, list: usize) -> String {
         }
         Class::Buffer => looked(&format!("arrayLength(&t{index})"), &format!("      hash = fold(hash, t{index}[at]);")),
         Class::Uniform => looked("16u", &format!("      hash = fold(hash, t{index}[at / 4u][at % 4u]);")),
+        Class::SamePixel(..) | Class::InTile(..) => String::new(),
     };
     format!("fn input{index}(start: u32) -> u32 {{\n  var hash = start;\n{body}\n  return hash;\n}}\n")
+}
+
+/// Generates the statement that adds one same-pixel read to a hash.
+fn same_pixel(numeric: Numeric, samples: bool, in_tile: bool, index: usize, list: usize) -> String {
+    let load = match (in_tile, samples) {
+        (true, _) => format!("textureLoad(t{index}, vec2i(0), 0)"),
+        (_, true) => format!("textureLoad(t{index}, at, 0)"),
+        _ => format!("textureLoad(t{index}, at, min(layer, textureNumLayers(t{index}) - 1u), 0)"),
+    };
+    let codes = match numeric {
+        Numeric::Float => format!("code({load}, {list}u)"),
+        Numeric::Depth => format!("vec4u(u32(round({load} * 65536.0)), 0u, 0u, 0u)"),
+        Numeric::Uint | Numeric::Stencil => format!("vec4u({load}.x, 0u, 0u, 0u)"),
+    };
+    format!("  hash = fold4(hash, {codes});\n")
 }
 
 /// Generates the statements that write a storage texture or buffer. `index` and `stride` are those of the invocation.
@@ -279,18 +308,18 @@ fn raster(out: Out, layered: bool) -> String {
             };
             let body = format!(
                 "  if !chosen(tag, at.x, at.y) {{ discard; }}
-  let codes = painted(texel_hash(in.digest, tag, at.x, at.y));
+  let codes = painted(with_same(texel_hash(in.digest, tag, at.x, at.y), at, layer));
   return {value};"
             );
             (format!(" -> @location({slot}) {kind}"), body)
         }
         Out::Depth => {
             let body = "  if !chosen(tag, at.x, at.y) { discard; }
-  return f32(painted(texel_hash(in.digest, tag, at.x, at.y)).x) / 65536.0;";
+  return f32(painted(with_same(texel_hash(in.digest, tag, at.x, at.y), at, layer)).x) / 65536.0;";
             (" -> @builtin(frag_depth) f32".into(), body.into())
         }
         Out::Stencil => {
-            let body = "  let hash = texel_hash(in.digest, tag, at.x, at.y);
+            let body = "  let hash = with_same(texel_hash(in.digest, tag, at.x, at.y), at, layer);
   if !chosen(tag, at.x, at.y) || (hash & 3u) != params.wanted { discard; }";
             (String::new(), body.into())
         }
@@ -304,7 +333,7 @@ fn raster(out: Out, layered: bool) -> String {
             (String::new(), body)
         }
     };
-    let (view, layer) = if layered { (", @builtin(view_index) view: u32", " + view") } else { ("", "") };
+    let (view, layer) = if layered { (", @builtin(view_index) view: u32", "u32(view)") } else { ("", "0u") };
     format!(
         "struct Varying {{
   @builtin(position) at: vec4f,
@@ -320,8 +349,11 @@ fn raster(out: Out, layered: bool) -> String {
 }}
 @fragment fn fs_main(in: Varying{view}){returns} {{
   let at = vec2u(in.at.xy);
-  let tag = params.tag{layer};
+  let layer = {layer};
+  let tag = params.tag + layer;
   if all(at == vec2u(0u)) {{ witness[params.witness] = in.plain; }}
+  // Every binding must be used.
+  if in.plain == 0u && with_same(in.digest, at, layer) == 1u {{ discard; }}
 {body}
 }}
 "

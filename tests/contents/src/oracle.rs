@@ -33,8 +33,9 @@ pub struct Outcome {
 /// History images of earlier frames, newest first, by the resource that a frame writes.
 pub type Past = Vec<Vec<Contents>>;
 
-/// Runs a frame. `entry` has the contents of imports, `past` the history images of earlier frames.
-pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -> Outcome {
+/// Runs a frame. `entry` has the contents of imports, `past` the history images of earlier frames. `pixelwise` is that
+/// of [`spec::inputs`].
+pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past, pixelwise: bool) -> Outcome {
     let ids = graph.resource_ids().zip(graph.resources());
     let contents = ids.map(|(id, row)| match row.kind {
         kind @ Kind::Imported { .. } if kind.defined_on_entry() => {
@@ -47,7 +48,7 @@ pub fn run(graph: &Graph, frame: u32, entry: &[Option<Contents>], past: &Past) -
         Kind::Imported { .. } | Kind::Transient | Kind::HistoryCurrent { .. } => blank(graph, id, false),
     });
     let notes = vec![[None, None]; graph.passes().len()];
-    let mut machine = Machine { graph, frame, contents: contents.collect(), notes };
+    let mut machine = Machine { graph, frame, contents: contents.collect(), notes, pixelwise };
     let digests = graph.pass_ids().map(|pass| machine.pass(pass)).collect();
     Outcome { contents: machine.contents, digests, notes: machine.notes }
 }
@@ -81,6 +82,7 @@ pub struct Machine<'g> {
     pub frame: u32,
     pub contents: Vec<Contents>,
     pub notes: Vec<[Option<Vec<u8>>; NOTES]>,
+    pixelwise: bool,
 }
 
 impl Machine<'_> {
@@ -97,7 +99,7 @@ impl Machine<'_> {
         let accesses = self.graph.accesses_of(pass);
         // Color is tested against the depth before the pass.
         for (row, access) in accesses.iter().enumerate().filter(|(_, a)| a.kind == AccessKind::Color) {
-            self.paint(row, access, Aspect::All, salt, with_arguments);
+            self.paint(Some(pass), row, access, Aspect::All, salt, with_arguments);
             self.paint_where_tested(pass, row, access, salt, digest);
         }
         for (row, access) in accesses.iter().enumerate() {
@@ -106,13 +108,13 @@ impl Machine<'_> {
                     let desc = self.graph.resources()[access.resource.index()].desc;
                     for plane in desc.texture().map_or(vec![], |t| spec::planes_of(t.format, access.range.aspect)) {
                         let digest = if plane == Aspect::Depth { with_arguments } else { digest };
-                        self.paint(row, access, plane, salt, digest);
+                        self.paint(Some(pass), row, access, plane, salt, digest);
                     }
                 }
                 AccessKind::StorageWrite => {
                     let digest = if compute { with_arguments } else { digest };
                     match self.graph.resources()[access.resource.index()].desc {
-                        Desc::Texture(_) => self.paint(row, access, Aspect::All, salt, digest),
+                        Desc::Texture(_) => self.paint(None, row, access, Aspect::All, salt, digest),
                         Desc::Buffer(_) => self.write(row, access, salt, digest),
                     }
                 }
@@ -163,7 +165,7 @@ impl Machine<'_> {
     fn digest(&self, pass: PassId, salt: u32) -> Option<u32> {
         let accesses = self.graph.accesses_of(pass);
         let mut hash = salt;
-        for input in spec::inputs(self.graph, pass) {
+        for input in spec::inputs(self.graph, pass, self.pixelwise) {
             let access = &accesses[input.access];
             hash = match input.class {
                 Class::Texture(_, samples) => {
@@ -176,6 +178,7 @@ impl Machine<'_> {
                     let first = input.offset as usize;
                     fold_words(hash, &self.bytes(access.resource)?[first..first + spec::UNIFORM_BYTES as usize])
                 }
+                Class::SamePixel(..) | Class::InTile(..) => hash,
             };
         }
         Some(mix(hash, 0))
@@ -221,13 +224,36 @@ impl Machine<'_> {
         Some(mix(mix(digest?, last_instance), first_of_last_triangle))
     }
 
-    /// Writes every part of an access.
-    fn paint(&mut self, row: usize, access: &Access, plane: Aspect, salt: u32, digest: Option<u32>) {
+    /// Returns the texels that a pass reads at the same pixel, of the layer at `index`; `None` if some are undefined.
+    fn same_pixel(&self, pass: Option<PassId>, index: u16) -> Option<Vec<Vec<Texel>>> {
+        let Some(pass) = pass else { return Some(Vec::new()) };
+        let inputs = spec::inputs(self.graph, pass, self.pixelwise).into_iter();
+        let texels = inputs.filter(|input| matches!(input.class, Class::SamePixel(..))).map(|input| {
+            let access = &self.graph.accesses_of(pass)[input.access];
+            let layers = spec::layers(self.graph, access);
+            let layer = (access.range.layer + index).min(layers.end - 1);
+            let at = part_index(self.graph, access.resource, access.range.mip, layer, input.plane);
+            self.part(access.resource, at).clone()
+        });
+        texels.collect()
+    }
+
+    /// Writes every part of an access. Texels depend on the same-pixel reads of `pass`.
+    fn paint(
+        &mut self,
+        pass: Option<PassId>,
+        row: usize,
+        access: &Access,
+        plane: Aspect,
+        salt: u32,
+        digest: Option<u32>,
+    ) {
         let Desc::Texture(desc) = self.graph.resources()[access.resource.index()].desc else { return };
         let coding = coding(desc.format, plane);
         let index = spec::plane_index(desc.format, plane);
         for mip in spec::mips(self.graph, access) {
             for layer in spec::layers(self.graph, access) {
+                let same = self.same_pixel(pass, layer - access.range.layer);
                 let tag = spec::tag(row, index, mip) + u32::from(layer);
                 let [width, height] = spec::texels(self.graph, access.resource, mip);
                 let at = part_index(self.graph, access.resource, mip, layer, plane);
@@ -242,10 +268,10 @@ impl Machine<'_> {
                     Paint::Over => part.take(),
                     Paint::Cleared => cleared,
                 };
-                *part = old.zip(digest).map(|(mut texels, digest)| {
-                    for (texel, (x, y)) in texels.iter_mut().zip(places(width, height)) {
+                *part = old.zip(digest).zip(same).map(|((mut texels, digest), same)| {
+                    for ((at, texel), (x, y)) in texels.iter_mut().enumerate().zip(places(width, height)) {
                         if access.mode == Mode::Overwrite || chosen(salt, tag, x, y) {
-                            *texel = coding.painted(texel_hash(digest, tag, x, y));
+                            *texel = coding.painted(with_same(texel_hash(digest, tag, x, y), &same, at));
                         }
                     }
                     texels
@@ -266,21 +292,24 @@ impl Machine<'_> {
             for plane in spec::planes_of(depth.format, tested.range.aspect) {
                 let at = part_index(self.graph, tested.resource, tested.range.mip, tested_layer, plane);
                 let tests = self.part(tested.resource, at).clone();
+                let same = self.same_pixel(Some(pass), layer - access.range.layer);
                 let tag = spec::tag(row, 0, access.range.mip) + u32::from(layer);
                 let [width, height] = spec::texels(self.graph, access.resource, access.range.mip);
                 let at = part_index(self.graph, access.resource, access.range.mip, layer, Aspect::All);
                 let part = self.part_mut(access.resource, at);
-                let known = part.take().zip(tests).zip(digest);
-                *part = known.map(|((mut texels, tests), digest)| {
+                let known = part.take().zip(tests).zip(digest).zip(same);
+                *part = known.map(|(((mut texels, tests), digest), same)| {
                     let all = access.mode == Mode::Overwrite;
-                    for ((texel, test), (x, y)) in texels.iter_mut().zip(tests).zip(places(width, height)) {
+                    for (at, ((texel, test), (x, y))) in
+                        texels.iter_mut().zip(tests).zip(places(width, height)).enumerate()
+                    {
                         let (passed, mark) = match plane {
                             Aspect::Stencil => (test[0] == STENCIL_STEP, spec::STENCIL_PASSED),
                             // The tested depth lies between the codes 32767 and 32768.
                             _ => (test[0] < 32768, spec::DEPTH_PASSED),
                         };
                         if passed && (all || chosen(salt, tag, x, y)) {
-                            *texel = coding.painted(texel_hash(digest, tag | mark, x, y));
+                            *texel = coding.painted(with_same(texel_hash(digest, tag | mark, x, y), &same, at));
                         }
                     }
                     texels
@@ -310,6 +339,11 @@ impl Machine<'_> {
             bytes
         });
     }
+}
+
+/// Adds the texels of same-pixel reads to a hash.
+fn with_same(hash: u32, same: &[Vec<Texel>], at: usize) -> u32 {
+    same.iter().fold(hash, |hash, texels| texels[at].into_iter().fold(hash, fold))
 }
 
 /// Iterates over columns and rows, row by row.

@@ -1,0 +1,32 @@
+//! Draws a small frame on Vulkan and prints what it costs: color and post-processing in two subpasses of one render
+//! pass, ambient occlusion on a second queue, at one and at four samples.
+//!
+//! `cargo run -p framegraph-vulkan --example vulkan_post --features testing`
+
+mod post;
+
+use framegraph_vulkan::testing::{DeviceRequest, TestDevice};
+use program::line;
+
+fn main() -> std::process::ExitCode {
+    let request = DeviceRequest { layers: false, ..DeviceRequest::default() };
+    let drawn = TestDevice::open(request).map_err(|error| -> Box<dyn std::error::Error> { error }).and_then(|device| {
+        line(format_args!("{}, {} distinct queues", device.gpu().name(), device.distinct_queues));
+        [1, 4].into_iter().try_for_each(|samples| {
+            let report = post::run(&device, samples)?;
+            line(format_args!(
+                "{samples} samples: {} passes in {} steps, {} on the second queue, {} subpasses in the last step",
+                report.counts.passes, report.counts.steps, report.moved, report.subpasses
+            ));
+            let memory = report.memory;
+            line(format_args!(
+                "  memory: {} B without sharing, {} B allocated, {} B lazily allocated with {} B committed",
+                memory.unshared_bytes, memory.allocated_bytes, memory.lazy_bytes, memory.lazy_committed_bytes
+            ));
+            line(format_args!("  {} loads, {} stores", report.counts.unresolves, report.counts.resolves));
+            line(format_args!("  largest difference from the reference: {} of 255", report.difference));
+            if report.difference > 1 { Err("the picture is wrong".into()) } else { Ok(()) }
+        })
+    });
+    program::ended("vulkan_post", drawn.map_err(|error: Box<dyn std::error::Error>| error.to_string()))
+}

@@ -1,0 +1,37 @@
+#![doc = include_str!("../README.md")]
+
+mod begin;
+mod clear;
+mod compile;
+mod convert;
+mod cx;
+mod driver;
+mod error;
+mod executor;
+mod gpu;
+mod imports;
+mod lanes;
+mod layouts;
+mod owners;
+mod prepared;
+mod render_pass;
+mod resources;
+mod run;
+mod shape;
+mod subpass;
+#[cfg(feature = "testing")]
+pub mod testing;
+mod timing;
+mod views;
+
+pub use ash;
+pub use convert::vk_format;
+pub use cx::{BoundBuffer, BoundImage, Cx, RecordError};
+pub use error::Error;
+#[cfg(feature = "testing")]
+pub use executor::stream;
+pub use executor::{Executor, ExecutorOptions, Exported};
+pub use gpu::{DeviceFeatures, DeviceQueue, Gpu, GpuDesc, Synchronization};
+pub use imports::Imports;
+pub use resources::MemoryReport;
+pub use views::ViewShape;

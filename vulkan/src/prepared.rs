@@ -1,0 +1,89 @@
+//! Everything that is computed or created once for a plan.
+
+use crate::driver::{Driver, Object};
+use crate::error::Error;
+use crate::gpu::Gpu;
+use crate::owners::check_owners;
+use crate::resources::{Resources, Ring};
+use crate::subpass::{Subpass, subpasses};
+use ash::vk;
+use framegraph::{Plan, StepId};
+use framegraph_queues::{Command, Schedule};
+use std::collections::BTreeMap;
+
+/// A plan with its commands and objects.
+pub(crate) struct Prepared {
+    pub(crate) plan: Plan,
+    pub(crate) commands: Vec<Command>,
+    pub(crate) schedule: Option<Schedule>,
+    pub(crate) resources: Resources,
+    pub(crate) steps: Vec<PreparedStep>,
+    /// Framebuffers by step and views.
+    pub(crate) framebuffers: BTreeMap<(StepId, Vec<vk::ImageView>), vk::Framebuffer>,
+}
+
+/// Subpasses and render pass of a step.
+#[derive(Default)]
+pub(crate) struct PreparedStep {
+    pub(crate) subpasses: Vec<Subpass>,
+    /// Subpass of each pass of the step.
+    pub(crate) subpass_of: Vec<u32>,
+    /// Created when the step is first recorded.
+    pub(crate) render_pass: Option<vk::RenderPass>,
+}
+
+impl Prepared {
+    /// Creates the objects of a plan.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        plan: &Plan,
+        schedule: Option<&Schedule>,
+        commands: Vec<Command>,
+        rings: Vec<Ring>,
+    ) -> Result<Self, Error> {
+        if !plan.caps().explicit_barriers {
+            return Err(Error::NoBarriers);
+        }
+        if plan.counts().inlined > 0 {
+            return Err(Error::Inlined);
+        }
+        let queues = schedule.map_or(1, |schedule| schedule.layout.queues.len());
+        if queues > gpu.shared.queues.len() {
+            return Err(Error::Queues { wanted: queues, given: gpu.shared.queues.len() });
+        }
+        check_owners(plan, schedule, &commands)?;
+        let mut families: Vec<u32> = gpu.shared.queues[..queues].iter().map(|queue| queue.family).collect();
+        families.sort_unstable();
+        families.dedup();
+        // Queues of one family need no concurrent sharing.
+        let families = if families.len() > 1 { families } else { Vec::new() };
+        let (mut resources, result) = Resources::new(gpu, plan, &commands, &families, rings);
+        if let Err(error) = result {
+            resources.destroy(&gpu.shared.driver);
+            return Err(error);
+        }
+        let step = |step: StepId| {
+            let (subpasses, subpass_of) = subpasses(plan, step);
+            PreparedStep { subpasses, subpass_of, render_pass: None }
+        };
+        Ok(Self {
+            steps: plan.step_ids().map(step).collect(),
+            plan: plan.clone(),
+            commands,
+            schedule: schedule.cloned(),
+            resources,
+            framebuffers: BTreeMap::new(),
+        })
+    }
+
+    /// Destroys everything. The GPU must have finished.
+    pub(crate) fn destroy(&mut self, driver: &Driver) {
+        for framebuffer in std::mem::take(&mut self.framebuffers).into_values() {
+            driver.destroy(Object::Framebuffer(framebuffer));
+        }
+        for pass in self.steps.drain(..).filter_map(|step| step.render_pass) {
+            driver.destroy(Object::RenderPass(pass));
+        }
+        self.resources.destroy(driver);
+    }
+}

@@ -1,0 +1,17 @@
+//! Helpers of examples and tests: a device with validation layers, pipelines from WGSL, and readback. They favor
+//! brevity over speed: each draw creates what it needs, and objects live until [`Kit::reset`].
+
+mod copies;
+mod device;
+mod imports;
+mod kit;
+mod memory;
+mod mock;
+mod spirv;
+
+pub use device::{DeviceRequest, OpenError, TestDevice};
+pub use imports::{WORD, imports};
+pub use kit::{Bound, DepthTest, Dispatch, Draw, Kit};
+pub use memory::Part;
+pub use mock::Mock;
+pub use spirv::{InputAttachment, spirv};

@@ -1,0 +1,8 @@
+//! Tests on the available Vulkan device, with synchronization validation.
+
+mod bench;
+mod contents;
+mod faults;
+mod frames;
+mod post;
+mod queues;
