@@ -37,6 +37,10 @@ mod guide {
     pub struct FilesAndPlugins;
     #[doc = include_str!("../../docs/guide/counts.md")]
     pub struct Counts;
+    #[doc = include_str!("../../docs/guide/standard-frame.md")]
+    pub struct StandardFrame;
+    #[doc = include_str!("../../docs/guide/migrating.md")]
+    pub struct Migrating;
     #[doc = include_str!("../../docs/guide/threads.md")]
     pub struct Threads;
 }
