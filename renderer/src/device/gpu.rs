@@ -184,7 +184,11 @@ impl Gpu {
 
     /// Returns the capabilities of the device for the compiler.
     pub fn caps(&self) -> Caps {
-        self.caps.get_or_init(|| self.query_caps()).clone()
+        self.caps_ref().clone()
+    }
+
+    pub(crate) fn caps_ref(&self) -> &Caps {
+        self.caps.get_or_init(|| self.query_caps())
     }
 
     fn query_caps(&self) -> Caps {
