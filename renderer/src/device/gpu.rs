@@ -86,8 +86,16 @@ impl Gpu {
         if !built.intersects(request.backends) {
             return Err(OpenError::NotBuilt { requested: request.backends, built });
         }
-        let all = adapters(request);
-        let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info())).collect();
+        Self::open_one_of(request, &adapters(request), |_| true)
+    }
+
+    /// Opens a device on the best of the adapters that fulfill the request and that `fits` accepts.
+    pub(crate) fn open_one_of(
+        request: &AdapterRequest,
+        all: &[Adapter],
+        fits: impl Fn(&Adapter) -> bool,
+    ) -> Result<Self, OpenError> {
+        let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info()) && fits(a)).collect();
         fitting.sort_by_key(|a| rank(&a.get_info()));
         if fitting.is_empty() {
             let found = all.iter().map(Adapter::get_info).collect();
