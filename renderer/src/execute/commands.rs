@@ -77,7 +77,7 @@ impl CommandList {
     }
 }
 
-/// Where the commands of a frame are recorded.
+/// Destination of the recorded commands of a frame.
 pub(crate) enum Destination<'d> {
     /// Into command buffers of the executor, on several threads if that is faster.
     Own,
