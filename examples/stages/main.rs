@@ -9,7 +9,7 @@ use frame::foggy;
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile, dump};
 use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::light::ibl::cache::Cache;
-use framegraph_passes::{CameraView, Handles, LightSearch, Lighting, Quality, Settings, Slot, ViewSettings, World};
+use framegraph_passes::{CameraView, Handles, Lighting, Quality, Settings, Slot, ViewSettings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::picture::encode_png;
 use framegraph_scene::{Scene, progress};
@@ -92,12 +92,8 @@ fn draw(out: &Path, density: f32) -> Result<(), Box<dyn Error>> {
     let seen = ViewSettings {
         camera: scene.default_camera(f64::from(SIZE_PX[0]) / f64::from(SIZE_PX[1])),
         size_px: SIZE_PX,
-        ev100: 14.5,
-        environment_intensity: 1.0,
         shadows: settings.shadows,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &seen);
     let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;

@@ -38,6 +38,8 @@ mod lens;
 mod picture;
 #[cfg(feature = "files")]
 pub mod plugins;
+#[cfg(feature = "ibl")]
+pub mod scene_loop;
 #[cfg(feature = "files")]
 pub mod settings_file;
 mod shadows;

@@ -16,16 +16,14 @@
 //! # Example
 //!
 //! This program renders a built-in scene to a texture without a window, and reads the texture back.
+//! `SceneLoop` in [`frame`] does all of it with one call, for a texture or a window.
 //!
 //! ```no_run
 //! # #[cfg(feature = "ibl")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use framegraph::{Extent, Format, Options, Plan, Scratch, Target, TextureDesc, compile};
 //! use framegraph_passes::gpu_scene::view::Background;
-//! use framegraph_passes::light::ibl::cache::Cache;
-//! use framegraph_passes::{
-//!     CameraView, LightSearch, Lighting, Quality, Settings, ViewSettings, World, standard,
-//! };
+//! use framegraph_passes::{CameraView, Lighting, Settings, ViewSettings, World, standard};
 //! use framegraph_scene::environment::Sky;
 //! use framegraph_scene::{Scene, progress};
 //! use framegraph_wgpu::{AdapterRequest, Executor, Frame, Gpu, Imports, read_texture};
@@ -36,20 +34,10 @@
 //! // The scene, its light and one view.
 //! let scene = Scene::open("columns", &mut progress::silent)?;
 //! let environment = Sky::default().environment(128)?;
-//! let quality = Quality::High;
-//! let cache = Cache::from_env();
-//! let lighting = Lighting::new(&gpu, &environment, &quality.light(), &cache, &mut progress::silent)?;
-//! let settings = Settings { shading: quality.shading(), ..Settings::DEFAULT }.for_scene(&scene, size_px);
-//! let view_settings = ViewSettings {
-//!     camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
-//!     size_px,
-//!     ev100: 14.5,
-//!     environment_intensity: 1.0,
-//!     shadows: settings.shadows,
-//!     lights: LightSearch::default(),
-//!     lod_error_px: 0.0,
-//!     visible_layers: 1,
-//! };
+//! let lighting = Lighting::with_defaults(&gpu, &environment)?;
+//! let settings = Settings::DEFAULT.for_scene(&scene, size_px);
+//! let camera = scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1]));
+//! let view_settings = ViewSettings { camera, size_px, ..ViewSettings::default() };
 //! let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &view_settings);
 //! let world = World::new(&gpu, &scene, lighting, [view], &mut progress::silent)?;
 //!

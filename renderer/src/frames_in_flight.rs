@@ -32,6 +32,8 @@ pub struct FramesInFlight {
     gpu: Gpu,
     max: NonZeroU32,
     queued: VecDeque<Queued>,
+    /// Times of finished frames, reused.
+    spare: Vec<Arc<OnceLock<Instant>>>,
     started: Option<Instant>,
     waits: u64,
     latency: Durations,
@@ -52,7 +54,7 @@ impl FramesInFlight {
     /// Creates an empty queue with the default maximum of two frames.
     pub fn new(gpu: &Gpu) -> Self {
         let (queued, latency) = (VecDeque::new(), Durations::default());
-        Self { gpu: gpu.clone(), max: Self::DEFAULT, queued, started: None, waits: 0, latency }
+        Self { gpu: gpu.clone(), max: Self::DEFAULT, queued, spare: Vec::new(), started: None, waits: 0, latency }
     }
 
     /// Sets the maximum number of queued frames, from the next frame on. 1 gives the lowest latency; higher values give
@@ -73,13 +75,17 @@ impl FramesInFlight {
     pub fn begin(&mut self) -> Result<(), DeviceError> {
         self.gpu.poll()?;
         self.collect();
-        let Self { gpu, max, queued, waits, latency, .. } = self;
+        let Self { gpu, max, queued, spare, waits, latency, .. } = self;
         let wait = |oldest: &Queued| {
             *waits += 1;
             let oldest = PollType::Wait { submission_index: Some(oldest.submission.clone()), timeout: None };
             gpu.poll_as(oldest, "waiting for an older frame")
         };
-        make_room(queued, *max, wait, |done| latency.push(done.ms()))?;
+        let finished = |frame: Queued| {
+            latency.push(frame.ms());
+            spare.push(frame.done);
+        };
+        make_room(queued, *max, wait, finished)?;
         self.started = Some(Instant::now());
         Ok(())
     }
@@ -88,7 +94,12 @@ impl FramesInFlight {
     /// the frame begins now.
     pub fn submitted(&mut self, submission: SubmissionIndex) {
         let started = self.started.take().unwrap_or_else(Instant::now);
-        let done = Arc::new(OnceLock::new());
+        let mut done = self.spare.pop().unwrap_or_default();
+        match Arc::get_mut(&mut done) {
+            Some(time) => drop(time.take()),
+            // The callback was not dropped yet.
+            None => done = Arc::default(),
+        }
         let finished = done.clone();
         self.gpu.queue.on_submitted_work_done(move || {
             finished.get_or_init(Instant::now);
@@ -119,6 +130,7 @@ impl FramesInFlight {
     fn collect(&mut self) {
         while let Some(done) = self.queued.pop_front_if(|oldest| oldest.done.get().is_some()) {
             self.latency.push(done.ms());
+            self.spare.push(done.done);
         }
     }
 }

@@ -17,6 +17,7 @@ mod settings;
 pub mod velocity;
 
 pub use jitter::JitterPattern;
+pub(crate) use pass::SUM_FORMAT;
 pub use pass::{Taa, TaaIo};
 pub use settings::{Clipping, ColorBox, TaaSettings};
 
@@ -39,7 +40,7 @@ where
 {
     let depth = single_sample_depth(frame, handles, DepthOf::FirstSample)?;
     let hdr = handles.get(Slot::HDR)?;
-    let sum = frame.graph_mut().history("taa", TextureDesc::new(handles.extent(), pass::SUM_FORMAT), 1);
+    let sum = frame.graph_mut().history("taa", TextureDesc::new(handles.extent(), SUM_FORMAT), 1);
     let earlier = frame.graph_mut().previous(sum, 1)?;
     let velocity = handles.find(Slot::VELOCITY);
     let pass = Taa { view: handles.view(), hdr, depth, velocity, earlier, into: sum, settings: *settings };

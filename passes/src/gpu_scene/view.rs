@@ -54,6 +54,22 @@ pub struct ViewSettings {
     pub visible_layers: u8,
 }
 
+/// 1280×720 pixels of the default camera, exposed for a sunny day (14.5 EV100), with shadows and full meshes.
+impl Default for ViewSettings {
+    fn default() -> Self {
+        Self {
+            camera: Camera::default(),
+            size_px: [1280, 720],
+            ev100: 14.5,
+            environment_intensity: 1.0,
+            shadows: Some(ShadowSettings::DEFAULT),
+            lights: LightSearch::default(),
+            lod_error_px: 0.0,
+            visible_layers: 1,
+        }
+    }
+}
+
 /// Background of a view.
 #[derive(Clone, Debug)]
 pub enum Background {

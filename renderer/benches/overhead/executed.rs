@@ -51,15 +51,20 @@ pub struct Executed {
     executor: Executor,
 }
 
+/// Declares the passes, each of which reads the picture of its predecessor.
+pub fn declare(frame: &mut Frame, case: Case) -> Result<(), DeclareError> {
+    let mut before = None;
+    for _ in 0..case.passes {
+        before = Some(frame.add("draw", Draw { before, draws: case.draws })?.1);
+    }
+    before.map_or(Ok(()), |last| frame.graph_mut().export(last))
+}
+
 impl Executed {
     /// Declares and compiles the frame.
     pub fn new(gpu: &Gpu, case: Case, timing: bool) -> Result<Self, Box<dyn Error>> {
         let mut frame = Frame::<()>::new();
-        let mut before = None;
-        for _ in 0..case.passes {
-            before = Some(frame.add("draw", Draw { before, draws: case.draws })?.1);
-        }
-        frame.graph_mut().export(before.ok_or("no pass")?)?;
+        declare(&mut frame, case)?;
         let (mut plan, options) = (Plan::new(), Options::for_frame(TEXELS, TEXELS));
         recompile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
         assert_eq!(plan.counts().steps as usize, case.passes, "what is compared is a step a pass");

@@ -122,6 +122,11 @@ fn enumerate(backends: Backends) -> Vec<Adapter> {
     if backends.is_empty() {
         return Vec::new();
     }
+    pollster::block_on(instance(backends).enumerate_adapters(backends))
+}
+
+/// Returns an instance with these graphics APIs.
+pub(crate) fn instance(backends: Backends) -> Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
     descriptor.backend_options = wgpu::BackendOptions::from_env_or_default();
@@ -129,7 +134,7 @@ fn enumerate(backends: Backends) -> Vec<Adapter> {
     descriptor.backend_options.noop.limits = Some(noop_limits());
     // Driver validation is off unless requested (WGPU_VALIDATION, WGPU_DEBUG). wgpu's own validation is always on.
     descriptor.flags = wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL.with_env();
-    pollster::block_on(Instance::new(descriptor).enumerate_adapters(backends))
+    Instance::new(descriptor)
 }
 
 /// Returns WebGPU's default limits with multiview. The default limits of wgpu's noop adapter are so large that they

@@ -89,8 +89,16 @@ impl Gpu {
         if !built.intersects(request.backends) {
             return Err(OpenError::NotBuilt { requested: request.backends, built });
         }
-        let all = adapters(request);
-        let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info())).collect();
+        Self::open_one_of(request, &adapters(request), |_| true)
+    }
+
+    /// Opens a device on the best of the adapters that fulfill the request and that `fits` accepts.
+    pub(crate) fn open_one_of(
+        request: &AdapterRequest,
+        all: &[Adapter],
+        fits: impl Fn(&Adapter) -> bool,
+    ) -> Result<Self, OpenError> {
+        let mut fitting: Vec<_> = all.iter().filter(|a| request.accepts(&a.get_info()) && fits(a)).collect();
         fitting.sort_by_key(|a| rank(&a.get_info()));
         if fitting.is_empty() {
             let found = all.iter().map(Adapter::get_info).collect();
@@ -205,7 +213,11 @@ impl Gpu {
     /// Returns the capabilities of the device for the compiler. The first call queries the driver, and draws two texels
     /// if it offers multiview ([`Gpu::max_attached_layers`]).
     pub fn caps(&self) -> Caps {
-        self.caps.get_or_init(|| query(self)).clone()
+        self.caps_ref().clone()
+    }
+
+    pub(crate) fn caps_ref(&self) -> &Caps {
+        self.caps.get_or_init(|| query(self))
     }
 
     /// Returns what the device can do with a format. The driver is queried once per format. Empty if the format needs a

@@ -1,9 +1,13 @@
 //! Window surfaces: handles resizing, outdated and lost surfaces, and minimized windows.
 
+use crate::device::adapter::{AdapterRequest, instance};
 use crate::device::error::DeviceError;
 use crate::device::gpu::Gpu;
+use crate::device::open_error::OpenError;
 use std::fmt;
-use wgpu::{CurrentSurfaceTexture, PresentMode, Surface, SurfaceConfiguration, SurfaceTexture, TextureFormat};
+use wgpu::{
+    CurrentSurfaceTexture, PresentMode, Surface, SurfaceConfiguration, SurfaceTarget, SurfaceTexture, TextureFormat,
+};
 
 /// A window surface with its configuration.
 ///
@@ -32,6 +36,15 @@ pub enum SurfaceError {
     /// The adapter cannot render to the surface.
     #[error("the adapter cannot draw into the window; choose another with WGPU_BACKEND or WGPU_ADAPTER_NAME")]
     Unfit,
+    /// No device could be opened for the window.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    /// The window has no surface.
+    #[error("the window has no surface: {reason}; set WGPU_BACKEND to another graphics API")]
+    Create {
+        /// Reason given by wgpu.
+        reason: String,
+    },
     /// The surface was lost. The window may still exist.
     #[error("the surface was lost; create a new one from the window and pass it to `WindowSurface::replace`")]
     Lost,
@@ -50,6 +63,26 @@ impl fmt::Debug for SurfaceError {
 }
 
 impl WindowSurface {
+    /// Opens a device that can draw into `window`, and a surface of `size` pixels. `window` is for example an
+    /// `Arc<winit::window::Window>`.
+    ///
+    /// # Errors
+    /// Fails with [`SurfaceError`].
+    pub fn open(
+        request: &AdapterRequest,
+        window: impl Into<SurfaceTarget<'static>>,
+        size: [u32; 2],
+    ) -> Result<(Gpu, Self), SurfaceError> {
+        request.check()?;
+        let instance = instance(request.backends);
+        let created = instance.create_surface(window);
+        let surface = created.map_err(|error| SurfaceError::Create { reason: error.to_string() })?;
+        let adapters = pollster::block_on(instance.enumerate_adapters(request.backends));
+        let gpu = Gpu::open_one_of(request, &adapters, |adapter| adapter.is_surface_supported(&surface))?;
+        let surface = Self::new(&gpu, surface, size)?;
+        Ok((gpu, surface))
+    }
+
     /// Configures a surface for a window of `size` pixels. Uses vertical synchronization, and an sRGB format if the
     /// surface offers one.
     ///

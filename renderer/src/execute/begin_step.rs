@@ -27,11 +27,8 @@ impl CachedStep {
             return Ok(0);
         }
         let attachments = plan.attachments_of(step);
-        let known = self.stamps.as_ref().is_some_and(|stamps| {
-            let same = |(a, stamp): (&Attachment, &u64)| frame.realized.stamp(a.resource) == Some(*stamp);
-            attachments.iter().zip(stamps).all(same)
-        });
-        if known {
+        let same = |(a, stamp): (&Attachment, &u64)| frame.realized.stamp(a.resource) == Some(*stamp);
+        if self.valid && attachments.iter().zip(&self.stamps).all(same) {
             return Ok(attachments.len());
         }
         self.release_views();
@@ -41,7 +38,9 @@ impl CachedStep {
             self.poisoned = poison::at_start(&mut self.attached, &self.targets);
             return Ok(0);
         }
-        self.stamps = attachments.iter().map(|a| frame.realized.stamp(a.resource)).collect();
+        self.stamps.clear();
+        self.stamps.extend(attachments.iter().map_while(|a| frame.realized.stamp(a.resource)));
+        self.valid = self.stamps.len() == attachments.len();
         Ok(0)
     }
 }

@@ -9,8 +9,10 @@ use framegraph::Counts;
 pub(crate) struct CachedStep {
     /// Compilation number of the plan; 0 before the first use.
     pub(crate) compilation: u64,
-    /// Stamps of the attached textures; `None` if `attached` is not valid.
-    pub(crate) stamps: Option<Vec<u64>>,
+    /// Stamps of the attached textures, if `attached` is valid.
+    pub(crate) stamps: Vec<u64>,
+    /// True if `attached` is valid while the textures have these stamps.
+    pub(crate) valid: bool,
     pub(crate) targets: Targets,
     pub(crate) attached: Attached,
     /// Operations that executing the step adds to the counts.
@@ -24,13 +26,13 @@ pub(crate) struct CachedStep {
 impl CachedStep {
     /// Releases the attached views.
     pub(crate) fn release_views(&mut self) {
-        self.stamps = None;
+        self.valid = false;
         self.attached.clear();
     }
 
     /// Ends the step. Releases views of surface textures, which are imported for one frame only.
     pub(crate) fn close(&mut self) {
-        if self.stamps.is_none() {
+        if !self.valid {
             self.attached.clear();
         }
     }

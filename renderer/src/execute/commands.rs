@@ -10,13 +10,13 @@ use wgpu::{CommandBuffer, CommandEncoder, Queue, SubmissionIndex};
 #[must_use = "a frame whose commands are not submitted is not drawn"]
 #[derive(Debug)]
 pub struct FrameCommands {
-    buffers: Vec<CommandBuffer>,
+    buffers: CommandList,
     /// True if each command buffer must be submitted on its own.
     separate: bool,
 }
 
 impl FrameCommands {
-    pub(crate) fn new(buffers: Vec<CommandBuffer>, separate: bool) -> Self {
+    pub(crate) fn new(buffers: CommandList, separate: bool) -> Self {
         Self { buffers, separate }
     }
 
@@ -30,13 +30,12 @@ impl FrameCommands {
         before: impl IntoIterator<Item = CommandBuffer>,
         after: impl IntoIterator<Item = CommandBuffer>,
     ) -> SubmissionIndex {
-        let Self { mut buffers, separate } = self;
-        let last = buffers.pop();
+        let Self { buffers: CommandList { first, last }, separate } = self;
         if !separate {
-            return queue.submit(before.into_iter().chain(buffers).chain(last).chain(after));
+            return queue.submit(before.into_iter().chain(first).chain(last).chain(after));
         }
         let mut before = Some(before);
-        for buffer in buffers {
+        for buffer in first {
             queue.submit(before.take().into_iter().flatten().chain([buffer]));
         }
         queue.submit(before.into_iter().flatten().chain(last).chain(after))
@@ -49,16 +48,36 @@ impl FrameCommands {
     /// Returns the commands unchanged if each command buffer must be submitted on its own (Mesa's llvmpipe before
     /// version 25 with [`framegraph::Alias::Heap`]). Use [`FrameCommands::submit`] in that case.
     pub fn into_buffers(self) -> Result<Vec<CommandBuffer>, Self> {
-        if self.separate { Err(self) } else { Ok(self.buffers) }
+        if self.separate { Err(self) } else { Ok(self.buffers.into_iter().collect()) }
     }
 
     /// Returns the number of command buffers.
     pub fn buffers(&self) -> usize {
-        self.buffers.len()
+        self.buffers.first.len() + usize::from(self.buffers.last.is_some())
     }
 }
 
-/// Where the commands of a frame are recorded.
+/// Command buffers in order. A list of one allocates nothing.
+#[derive(Debug, Default)]
+pub(crate) struct CommandList {
+    /// All but the last.
+    first: Vec<CommandBuffer>,
+    last: Option<CommandBuffer>,
+}
+
+impl CommandList {
+    /// Adds a command buffer.
+    pub(crate) fn push(&mut self, buffer: CommandBuffer) {
+        self.first.extend(self.last.replace(buffer));
+    }
+
+    /// Returns the command buffers in order.
+    pub(crate) fn into_iter(self) -> impl Iterator<Item = CommandBuffer> {
+        self.first.into_iter().chain(self.last)
+    }
+}
+
+/// Destination of the recorded commands of a frame.
 pub(crate) enum Destination<'d> {
     /// Into command buffers of the executor, on several threads if that is faster.
     Own,
@@ -78,8 +97,9 @@ mod tests {
     fn separate_submissions_return_no_buffers() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::noop()?;
         let commands = |separate| {
-            let buffers = [1, 2].map(|_| gpu.device.create_command_encoder(&Default::default()).finish());
-            FrameCommands::new(buffers.into(), separate)
+            let mut buffers = CommandList::default();
+            (0..2).for_each(|_| buffers.push(gpu.device.create_command_encoder(&Default::default()).finish()));
+            FrameCommands::new(buffers, separate)
         };
         assert_eq!(commands(false).into_buffers().map(|buffers| buffers.len()).ok(), Some(2));
         let back = commands(true).into_buffers().err().ok_or("handed out")?;

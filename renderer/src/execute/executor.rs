@@ -16,7 +16,7 @@ pub use warm_up::WarmUpProgress;
 use crate::device::error::{DeviceError, ErrorScopes};
 use crate::device::gpu::Gpu;
 use crate::execute::blame::{not_submitted, refused_pass};
-use crate::execute::commands::{Destination, FrameCommands};
+use crate::execute::commands::{CommandList, Destination, FrameCommands};
 use crate::execute::error::{ExecuteError, MemoryRequest, RecordError};
 use crate::execute::prepared::{Caches, Prepared};
 use crate::execute::recording::Recording;
@@ -356,7 +356,9 @@ impl Executor {
             }
             Destination::Stepwise(each) => record_part(frame, arenas, passes, all, recording, Some(each)),
             Destination::Encoder(_) if arenas.current().is_some() => Err(ExecuteError::SharedMemory),
-            Destination::Encoder(encoder) => record_into(frame, passes, recording, encoder).map(|()| Vec::new()),
+            Destination::Encoder(encoder) => {
+                record_into(frame, passes, recording, encoder).map(|()| CommandList::default())
+            }
         };
         let commands = commands.map(|buffers| FrameCommands::new(buffers, arenas.submits_separately(gpu)));
         *executed = recording.executed;

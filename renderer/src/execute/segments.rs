@@ -1,6 +1,7 @@
 //! Command buffers of a part of a frame. A new one begins wherever aliased memory is reused.
 
 use crate::device::gpu::Gpu;
+use crate::execute::commands::CommandList;
 use crate::execute::prepared::Prepared;
 use crate::placed::alias_barriers::{AliasBarrier, alias_barriers};
 use crate::placed::arenas::{Arena, Arenas};
@@ -14,7 +15,7 @@ use wgpu::{CommandBuffer, CommandEncoder, CommandEncoderDescriptor, TextureTrans
 pub(crate) struct Segments<'a> {
     gpu: &'a Gpu,
     pub(crate) encoder: CommandEncoder,
-    done: Vec<CommandBuffer>,
+    done: CommandList,
     steps: Range<u32>,
     sharing: Option<Sharing<'a>>,
 }
@@ -50,7 +51,7 @@ impl<'a> Segments<'a> {
             pending.reverse();
             Sharing { driver, arena, plan, realized, pending, active }
         });
-        Self { gpu, encoder: encoder(gpu), done: Vec::new(), steps, sharing }
+        Self { gpu, encoder: encoder(gpu), done: CommandList::default(), steps, sharing }
     }
 
     /// Begins a step. Activates the resources that use their memory from here on.
@@ -67,7 +68,7 @@ impl<'a> Segments<'a> {
     }
 
     /// Ends the part of the frame and returns its command buffers.
-    pub(crate) fn finish(mut self) -> Vec<CommandBuffer> {
+    pub(crate) fn finish(mut self) -> CommandList {
         if let Some(sharing) = &mut self.sharing {
             let last = self.steps.end as usize == sharing.plan.steps().len();
             let next = if last { StepId::NONE } else { StepId::at(self.steps.end as usize) };

@@ -16,7 +16,7 @@ use wgpu::{
 /// Minimum number of draws that a thread records. Fewer take less time than creating a bundle.
 const MIN_DRAWS: u32 = 256;
 
-/// What wgpu rejects, for errors.
+/// Object of the sentence "wgpu rejected …".
 const PART: &str = "a part of a pass";
 
 /// Begin of wgpu's message when it panics.

@@ -3,6 +3,7 @@
 
 use crate::clock::Instant;
 use crate::device::error::{DeviceError, ErrorScopes};
+use crate::execute::commands::CommandList;
 use crate::execute::error::ExecuteError;
 use crate::execute::prepared::Prepared;
 use crate::execute::recording::Recording;
@@ -16,7 +17,7 @@ use framegraph::{Placement, Plan, StepId, StoreOp, Usage};
 use std::ops::Range;
 #[cfg(feature = "threads")]
 use wgpu::Device;
-use wgpu::{CommandBuffer, CommandEncoder, Queue};
+use wgpu::{CommandEncoder, Queue};
 
 /// State of multithreaded recording.
 #[derive(Debug, Default)]
@@ -36,7 +37,7 @@ pub(crate) struct Threads {
 struct Part<'a> {
     steps: Range<u32>,
     recording: &'a mut Recording,
-    commands: Result<Vec<CommandBuffer>, ExecuteError>,
+    commands: Result<CommandList, ExecuteError>,
     caught: Result<(), DeviceError>,
 }
 
@@ -123,7 +124,7 @@ impl Threads {
         passes: &Passes<'_, W>,
         first: &mut Recording,
         caught: &mut Result<(), DeviceError>,
-    ) -> Option<Result<Vec<CommandBuffer>, ExecuteError>> {
+    ) -> Option<Result<CommandList, ExecuteError>> {
         let Self { workers, others, balancer, recorded, .. } = self;
         let workers = workers.as_ref().filter(|_| balancer.parts().len() > 1)?;
         let Passes { frame: declared, world, extra } = *passes;
@@ -136,7 +137,7 @@ impl Threads {
             .map(|(steps, recording)| Part {
                 steps: steps.clone(),
                 recording,
-                commands: Ok(Vec::new()),
+                commands: Ok(CommandList::default()),
                 caught: Ok(()),
             })
             .collect();
@@ -157,12 +158,12 @@ impl Threads {
         let mut jobs: Vec<_> = parts.iter_mut().map(|part| move |world: &W| record(part, world)).collect();
         let mut jobs: Vec<_> = jobs.iter_mut().map(|job| job as Job<'_, W>).collect();
         share(workers, &mut jobs, world);
-        let mut commands = Ok(Vec::new());
+        let mut commands = Ok(CommandList::default());
         for part in parts {
             // Reports the first error in the order of the steps, as with one thread.
             *caught = std::mem::replace(caught, Ok(())).and(part.caught);
-            commands = commands.and_then(|mut all: Vec<_>| {
-                all.extend(part.commands?);
+            commands = commands.and_then(|mut all: CommandList| {
+                part.commands?.into_iter().for_each(|buffer| all.push(buffer));
                 Ok(all)
             });
         }
@@ -220,7 +221,7 @@ pub(crate) fn record_part<W: ?Sized>(
     steps: Range<u32>,
     recording: &mut Recording,
     mut recorded: Option<&mut dyn FnMut(StepId, u64)>,
-) -> Result<Vec<CommandBuffer>, ExecuteError> {
+) -> Result<CommandList, ExecuteError> {
     let last = steps.end as usize == frame.plan.steps().len();
     let mut segments = recording.in_wgpu(|| Segments::new(frame, arenas, steps.clone()));
     for step in steps.map(|step| StepId::at(step as usize)) {

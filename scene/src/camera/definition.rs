@@ -19,6 +19,19 @@ pub struct Camera {
     pub projection: Projection,
 }
 
+/// A camera 5 m from the origin on +Z that looks along −Z, with a vertical field of view of 45°.
+impl Default for Camera {
+    fn default() -> Self {
+        let fov_y_rad = std::f64::consts::FRAC_PI_4;
+        Self {
+            name: String::new(),
+            eye: DVec3::new(0.0, 0.0, 5.0),
+            world_from_view: DQuat::IDENTITY,
+            projection: Projection::Perspective { fov_y_rad, near_m: 0.1, far_m: None },
+        }
+    }
+}
+
 impl Camera {
     /// Returns a camera at `eye` with `target` in the image center and `up` pointing up.
     ///

@@ -11,7 +11,7 @@ use framegraph_shaders::{Feature, Features, Module, library};
 use framegraph_wgpu::{Cx, Record, RecordError, SamplerDesc};
 
 /// Format of the history: half floats for any radiance format, since fewer bits stop accumulating early.
-pub(super) const SUM_FORMAT: Format = Format::Rgba16Float;
+pub(crate) const SUM_FORMAT: Format = Format::Rgba16Float;
 
 static SHADER: Module<'static> = library::pass("pass/taa.wgsl").unwrap();
 

@@ -4,8 +4,8 @@ use super::Lighting;
 use crate::gpu_scene::upload::{GpuEnvironment, UploadError};
 use crate::light::ibl::cache::Cache;
 use crate::light::ibl::{DfgTable, IblError, ImageLight};
-use crate::light::shading::LightSettings;
-use framegraph_scene::{Environment, ProgressFn};
+use crate::light::shading::{LightSettings, Quality};
+use framegraph_scene::{Environment, ProgressFn, progress};
 use framegraph_wgpu::Gpu;
 
 /// Error of creating light from an environment.
@@ -27,6 +27,15 @@ impl std::fmt::Debug for LightingError {
 }
 
 impl Lighting {
+    /// Uploads and prefilters `environment` with the settings of [`Quality::High`] and the cache of
+    /// [`Cache::from_env`], without reporting progress.
+    ///
+    /// # Errors
+    /// Fails if the environment does not fit the device, or the device fails.
+    pub fn with_defaults(gpu: &Gpu, environment: &Environment) -> Result<Self, LightingError> {
+        Self::new(gpu, environment, &Quality::High.light(), &Cache::from_env(), &mut progress::silent)
+    }
+
     /// Uploads `environment` and prefilters it, or loads the result from `cache`. Reports each step to `progress`,
     /// which can stop the work.
     ///

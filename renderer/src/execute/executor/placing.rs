@@ -46,7 +46,7 @@ impl Executor {
     ) -> Result<(), CompileErrors> {
         let Self { gpu, arenas, .. } = self;
         if options.alias != Alias::Heap {
-            recompile(graph, &gpu.caps(), options, scratch, plan)?;
+            recompile(graph, gpu.caps_ref(), options, scratch, plan)?;
             return Ok(());
         }
         // Each iteration learns more sizes; the first usually learns all.

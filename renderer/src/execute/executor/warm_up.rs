@@ -84,8 +84,8 @@ impl Executor {
     /// `shader`. Returns the number of recompiled pipelines.
     ///
     /// # Errors
-    /// Fails if the new source does not compile, does not match one of the pipelines, or does not fit the recorders
-    /// ([`ShaderError::Reload`]): it lacks an entry point, or expects other bindings, vertex inputs or outputs than
+    /// Fails if the new source does not compile or does not match one of the pipelines. Fails with
+    /// [`ShaderError::Reload`] if it lacks an entry point, or expects other bindings, vertex inputs or outputs than
     /// `shader`. The old source stays in use.
     pub fn reload_shader(&mut self, shader: &Shader<'_>, text: &str) -> Result<usize, ShaderError> {
         let Self { gpu, caches, .. } = self;
