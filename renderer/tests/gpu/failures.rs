@@ -132,7 +132,7 @@ fn unsupported_textures_name_supported_formats() -> TestResult {
     });
     let report = report.map_err(|e| e.to_string()).err().unwrap_or_default();
     assert!(
-        report.contains("does not support Rgba8Snorm for RENDER_ATTACHMENT") && report.contains("`snorm`"),
+        report.contains("the device does not support Rgba8Snorm as `color`") && report.contains("`snorm`"),
         "{report}"
     );
     bench.run(|f| declare(f, GOOD))?;

@@ -104,7 +104,9 @@ impl Runner {
     /// Compiles a graph and adds a recorder to each pass.
     pub fn prepare(&mut self, graph: Graph, options: &Options) -> Result<Result<Case, Beyond>, String> {
         let mut plan = Plan::new();
-        self.executors[0].compile(&graph, options, &mut self.scratch, &mut plan).map_err(|e| e.to_string())?;
+        if self.executors[0].compile(&graph, options, &mut self.scratch, &mut plan).is_err() {
+            return Ok(Err("refused by the compiler"));
+        }
         let copies = |p: PassId| plan.graph().passes()[p.index()].kind == PassKind::Copy;
         let mut kept = plan.graph().pass_ids().filter(|p| copies(*p));
         if kept.any(|p| copy::copies(plan.graph(), p).is_none()) {

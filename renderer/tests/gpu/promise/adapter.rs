@@ -1,9 +1,11 @@
 //! The differential test on the real adapter, in child processes.
 
+use super::case::{SIDE, small, target};
 use super::generate::{BUDGET_BYTES, cases};
 use super::{Bench, Outcome, Tally};
 use crate::bench::{TestResult, on_adapter};
-use framegraph_wgpu::{AdapterRequest, Gpu};
+use framegraph::{ClearValue, Format, Intent, Options, Plan, Scratch, compile};
+use framegraph_wgpu::{AdapterRequest, Executor, Frame, Gpu, mock};
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc;
@@ -101,6 +103,33 @@ fn plans_for_the_adapter_are_executed() -> TestResult {
         }
         tally.finish(&gpu.describe());
         assert!(lost.is_empty(), "the driver hangs or crashes in {lost:?}");
+        Ok(())
+    })
+}
+
+/// A pass with as many sampled textures as WebGPU allows, or a few more. Mesa unrolls loops of a single iteration; with
+/// a loop over levels and layers for each texture, its compiler took minutes for 16 textures.
+#[test]
+fn mock_recorders_sample_many_textures() -> TestResult {
+    on_adapter("mock_recorders_sample_many_textures", |gpu| {
+        let count = gpu.caps().max_sampled_textures.min(20);
+        let mut frame = Frame::<()>::new();
+        let graph = frame.graph_mut();
+        let textures: Vec<_> = (0..count).map(|n| graph.texture(&format!("t{n}"), small(Format::Rgba8Unorm))).collect();
+        let mut drawn = Vec::new();
+        for texture in textures {
+            drawn.push(graph.add_fn("draw", |pass| pass.color(texture, Intent::Clear(ClearValue::BLACK)))?);
+        }
+        graph.add_fn("look", |pass| {
+            pass.side_effect();
+            drawn.iter().try_for_each(|texture| pass.sampled(*texture).map(drop))?;
+            target(pass)
+        })?;
+        mock::add_recorders(&mut frame);
+        let (mut plan, options) = (Plan::new(), Options::for_frame(SIDE, SIDE));
+        compile(frame.graph(), &gpu.caps(), &options, &mut Scratch::new(), &mut plan)?;
+        Executor::new(gpu).execute(&plan, &frame, &(), &mock::imports(gpu, &plan)?.bound)?;
+        gpu.wait()?;
         Ok(())
     })
 }

@@ -180,8 +180,8 @@ fn bytes(caps: &Caps, budget_bytes: u64, cases: &mut Vec<Case>) {
             let name = format!("{size} bytes as {kind}");
             cases.push(Case::new("bytes", name, move |frame| buffer(frame, size, None, kind, Intent::Overwrite)));
         }
-        for offset in [0, 1, 2, 3, 4, 8, 16, 32, 64, 128, 255, 256, 260, 512] {
-            for bytes in [1, 2, 3, 4, 6, 16, 64, 256] {
+        for offset in [0, 1, 2, 4, 16, 64, 128, 256, 260] {
+            for bytes in [1, 3, 4, 6, 16, 256] {
                 let name = format!("bytes {offset}..{} as {kind}", offset + bytes);
                 let range = Some((offset, bytes));
                 cases.push(Case::new("range", name, move |frame| buffer(frame, 1024, range, kind, Intent::Overwrite)));
@@ -242,7 +242,7 @@ fn attachments(cases: &mut Vec<Case>) {
     use Format::*;
     let formats = [R8Unorm, Rgba8Unorm, Rg8Unorm, R16Float, R32Float, Rgba16Float, Rgba32Float, Rgb10a2Unorm, R32Uint];
     let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
-    for number in 0..600 {
+    for number in 0..300 {
         let chosen: Vec<_> = (0..8)
             .filter_map(|slot| (numbers.below(3) != 0).then(|| (slot, formats[numbers.below(formats.len())])))
             .collect();
