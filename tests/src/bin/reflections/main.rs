@@ -29,7 +29,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let choices = [
         ("on", Resolution::Full),
         ("on", Resolution::Half),
-        ("on:stride=1", Resolution::Full),
+        ("on:stride=2", Resolution::Full),
         ("on:stride=4", Resolution::Full),
         ("on:stride=8", Resolution::Full),
         ("on:thickness=0.01", Resolution::Full),
