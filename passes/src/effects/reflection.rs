@@ -1,18 +1,20 @@
 //! Screen-space reflections.
 //!
 //! ```text
-//! structure ───────────────────────┬─> reflection ─> reflection_level 1 ─> reflection_level 2 ─> … ─> color ─> hdr
-//! reflection_depth ────────────────┤                                                                          │
+//! structure ─> depth_bounds ─> … ──┬─> reflection ─> reflection_level 1 ─> reflection_level 2 ─> … ─> color ─> hdr
+//! prepass ─────────────────────────┤                                                                          │
 //! hdr of the previous frame ───────┘ <────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
 //! Draws surfaces again, traces the reflected ray of each pixel through the structure, and reads radiance at the hit
-//! from the previous frame. The previous radiance is a history, not a copy. Rough surfaces read coarser levels of the
+//! from the previous frame. Rays skip blocks of texels that they pass in front of or behind. The previous radiance is a history, not a copy. Rough surfaces read coarser levels of the
 //! result, selected by hit distance. The color pass reflects the environment where rays hit nothing.
 
+mod bounds;
 mod pass;
 mod settings;
 
+pub use bounds::{DepthBounds, DepthBoundsIo};
 pub use pass::{Reflection, ReflectionIo};
 pub use settings::ReflectionSettings;
 
@@ -23,8 +25,11 @@ use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::Views;
 use crate::program::Programs;
 use crate::stages::{Handles, Slot, StageError};
-use framegraph::{Format, TextureDesc};
+use framegraph::{Format, Target, TextureDesc};
 use framegraph_wgpu::Frame;
+
+/// Maximum number of levels of depth bounds; the largest blocks have 32×32 texels.
+const MAX_BOUNDS_LEVELS: u8 = 5;
 
 /// Declares screen-space reflections of a view, with the structure and a history of the radiance. The color pass has to
 /// draw into that history, of format `format`. Sets [`Slot::REFLECTIONS`], [`Slot::HIT_DISTANCE`] and
@@ -55,9 +60,20 @@ where
     let earlier = frame.graph_mut().previous(hdr, 1)?;
     let depth = match drawn_depth(frame, handles) {
         Some(depth) => depth,
+        None if resolution == Resolution::Full => structure,
         None => frame.add("reflection_depth", Prepass { view, extent, samples: 1, stencil: false })?,
     };
-    let pass = Reflection { view, structure, depth, earlier, levels, settings: *settings };
+    let mut bounds = None;
+    if settings.stride_texels <= 1.0 {
+        // A picture of this many levels has one less at half its size.
+        let levels = levels.saturating_sub(1).clamp(1, MAX_BOUNDS_LEVELS);
+        for level in 0..levels {
+            let target = bounds.map_or(Target::New, Target::from);
+            let pass = DepthBounds { depth: structure, bounds: target, level, levels };
+            bounds = Some(frame.add("depth_bounds", pass)?.bounds);
+        }
+    }
+    let pass = Reflection { view, structure, bounds, depth, earlier, levels, settings: *settings };
     let ReflectionIo { mut reflections, ways, .. } = frame.add("reflection", pass)?;
     for level in 1..levels {
         reflections = frame.add("reflection_level", SceneLevel { scene: reflections, level })?.scene;

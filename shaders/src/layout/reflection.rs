@@ -2,7 +2,7 @@
 
 use super::occlusion::Projection;
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec2};
+use glam::Mat4;
 
 /// Settings of screen-space reflections.
 #[repr(C)]
@@ -24,8 +24,10 @@ pub struct ReflectionUniforms {
     pub most_roughness: f32,
     /// Exposure of this frame divided by that of the previous frame.
     pub exposure_ratio: f32,
+    /// Number of levels of depth bounds.
+    pub bounds_levels: i32,
     /// Padding.
-    pub _pad: Vec2,
+    pub _pad: f32,
 }
 
 #[cfg(test)]
@@ -39,6 +41,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         stride,
         most_roughness,
         exposure_ratio,
+        bounds_levels,
         _pad,
     })]
 }

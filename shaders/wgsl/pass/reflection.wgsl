@@ -43,8 +43,12 @@ struct ReflectionUniforms {
     most_roughness: f32,
     /// Exposure of this frame divided by that of the previous frame.
     exposure_ratio: f32,
+    /// Number of levels of `depth_bounds`.
+    bounds_levels: i32,
 }
 
+/// Largest and smallest depth of blocks, written by pass/depth_bounds.wgsl.
+@group(0) @binding(39) var depth_bounds: texture_2d<f32>;
 @group(0) @binding(22) var<uniform> settings: ReflectionUniforms;
 /// Pre-exposed radiance of the previous frame.
 @group(0) @binding(41) var earlier: texture_2d<f32>;
@@ -143,6 +147,83 @@ fn follow(ray: PictureRay, origin: vec3<f32>, normal: vec3<f32>, jitter: f32) ->
     return Meeting(1.0, false);
 }
 
+/// Block of texels at a place of a ray, and the share at which the ray leaves it.
+struct Block {
+    index: vec2<i32>,
+    leaves: f32,
+}
+
+/// Returns the block of a level at a share of a ray. The last block of a side ends with the picture.
+fn block_at(ray: PictureRay, share: f32, level: i32, size: vec2<i32>) -> Block {
+    // At a border, the next block: a thousandth of a texel ahead.
+    let ahead = ray.start.xy + share * ray.way.xy + 1e-3 * sign(ray.way.xy);
+    let texel = clamp(vec2<i32>(floor(ahead)), vec2<i32>(0), size - 1);
+    let shift = vec2<u32>(u32(level));
+    var last = size - 1;
+    if level > 0 {
+        let first = vec2<i32>(textureDimensions(depth_bounds));
+        last = max(first >> vec2<u32>(u32(level - 1)), vec2<i32>(1)) - 1;
+    }
+    let index = min(texel >> shift, last);
+    let above = select((index + 1) << shift, size, index == last);
+    let border = vec2<f32>(select(index << shift, above, ray.way.xy > vec2<f32>(0.0)));
+    let moves = abs(ray.way.xy);
+    let away = select(vec2<f32>(1.0), abs(border - ray.start.xy) / moves, moves > vec2<f32>(1e-6));
+    return Block(index, min(away.x, away.y));
+}
+
+/// Returns true if a ray, between two depths, passes a block in front of its nearest surface or
+/// behind its farthest one.
+fn passes(nearest: f32, farthest: f32, bounds: vec2<f32>) -> bool {
+    if farthest > bounds.x {
+        return true;
+    }
+    let row = settings.projection.depth;
+    return view_z(nearest, row) < view_z(bounds.y, row) - settings.thickness_m;
+}
+
+/// Traces a ray as `follow` does, through all texels on its way. Blocks of texels that it passes
+/// are skipped.
+fn follow_in_blocks(ray: PictureRay, origin: vec3<f32>, normal: vec3<f32>) -> Meeting {
+    let size = vec2<i32>(textureDimensions(structure));
+    let end = share_in_picture(ray.start.xy, ray.way.xy, vec2<f32>(size));
+    let row = settings.projection.depth;
+    let most = 4 * (size.x + size.y);
+    var level = min(1, settings.bounds_levels);
+    var share = 0.0;
+    for (var i = 0; i < most; i++) {
+        let block = block_at(ray, share, level, size);
+        let next = min(max(block.leaves, share), end);
+        let from_depth = ray.start.z + share * ray.way.z;
+        let to_depth = ray.start.z + next * ray.way.z;
+        if level > 0 {
+            let bounds = textureLoad(depth_bounds, block.index, level - 1).rg;
+            if !passes(max(from_depth, to_depth), min(from_depth, to_depth), bounds) {
+                level -= 1;
+                continue;
+            }
+        } else {
+            let depth = structure_depth(block.index);
+            let here_z = view_z(to_depth, row);
+            let before_z = view_z(from_depth, row);
+            if depth > 0.0
+                && ray_meets(before_z, here_z, view_z(depth, row), settings.thickness_m) {
+                let met = structure_position(block.index, depth, settings.projection);
+                let over = place_on(ray, next);
+                if rises_from_plane(dot(normal, met - origin), dot(normal, over - origin)) {
+                    return Meeting(share_at_depth(depth, ray.start.z, ray.way.z, share, next), true);
+                }
+            }
+        }
+        if next >= end {
+            break;
+        }
+        share = next;
+        level = min(level + 1, settings.bounds_levels);
+    }
+    return Meeting(1.0, false);
+}
+
 /// Result of a pixel's ray.
 struct Found {
     /// Radiance times its weight, and the weight.
@@ -171,17 +252,27 @@ fn earlier_radiance(place: vec3<f32>) -> vec4<f32> {
     return vec4<f32>(exposed * fade, fade);
 }
 
-@fragment
-fn fs_main(
-    vertex: SurfaceVertex,
-    @builtin(front_facing) front_facing: bool,
-) -> Found {
+/// Ray of a fragment.
+struct Traced {
+    ray: PictureRay,
+    origin: vec3<f32>,
+    outset: vec3<f32>,
+    /// Weight by roughness; 0 if the fragment has no ray.
+    weight: f32,
+    /// Geometric normal in view space.
+    normal: vec3<f32>,
+}
+
+/// Returns the mirrored ray of a fragment, in view space.
+fn mirrored_ray(vertex: SurfaceVertex, front_facing: bool) -> Traced {
     let geometric = geometric_normal(vertex);
     let side = face_sign(front_facing);
     let normal = shading_normal(vertex, smooth_normal(vertex, geometric, side), side);
-    let traced = roughness_fade(metallic_roughness(texture_uv(vertex)).y, settings.most_roughness);
-    if traced <= 0.0 || material_has(TRAIT_UNLIT) {
-        return NOTHING;
+    var traced: Traced;
+    traced.weight = 0.0;
+    let weight = roughness_fade(metallic_roughness(texture_uv(vertex)).y, settings.most_roughness);
+    if weight <= 0.0 || material_has(TRAIT_UNLIT) {
+        return traced;
     }
     let view_from_world = transpose(mat3x3<f32>(
         frame.world_from_view[0].xyz,
@@ -191,25 +282,58 @@ fn fs_main(
     let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
     let mirrored = reflect(-normalize_or(to_viewer, normal), normal);
     let along = normalize_or(view_from_world * mirrored, vec3<f32>(0.0, 0.0, -1.0));
-    let origin = view_from_world * vertex.world;
-    let outset = origin + settings.bias_m * along;
+    traced.origin = view_from_world * vertex.world;
+    traced.outset = traced.origin + settings.bias_m * along;
+    traced.normal = view_from_world * geometric;
     let near_z = view_z(1.0, settings.projection.depth);
-    let length_m = ray_length_m(outset.z, along.z, near_z, settings.reach_m);
+    let length_m = ray_length_m(traced.outset.z, along.z, near_z, settings.reach_m);
     if !(length_m > 0.0) {
-        return NOTHING;
+        return traced;
     }
-    let start = in_picture(outset);
-    let ray = PictureRay(start, in_picture(outset + length_m * along) - start);
-    let jitter = interleaved_gradient_noise(vertex.position.xy, 0u);
-    let found = follow(ray, origin, view_from_world * geometric, jitter);
+    let start = in_picture(traced.outset);
+    traced.ray = PictureRay(start, in_picture(traced.outset + length_m * along) - start);
+    traced.weight = weight;
+    return traced;
+}
+
+/// Returns the radiance at the hit of a ray.
+fn found_at(traced: Traced, found: Meeting) -> Found {
     if !found.met {
         return NOTHING;
     }
-    let place = place_on(ray, found.share);
-    let way_m = distance(outset, place);
-    let radiance = earlier_radiance(place) * (traced * reach_fade(way_m / settings.reach_m));
+    let place = place_on(traced.ray, found.share);
+    let way_m = distance(traced.outset, place);
+    let weight = traced.weight * reach_fade(way_m / settings.reach_m);
+    let radiance = earlier_radiance(place) * weight;
     if radiance.a == 0.0 {
         return NOTHING;
     }
     return Found(radiance, min(settings.bias_m + way_m, 65504.0));
+}
+
+/// Steps over several texels at a time.
+@fragment
+fn fs_main(
+    vertex: SurfaceVertex,
+    @builtin(front_facing) front_facing: bool,
+) -> Found {
+    let traced = mirrored_ray(vertex, front_facing);
+    if traced.weight <= 0.0 {
+        return NOTHING;
+    }
+    let jitter = interleaved_gradient_noise(vertex.position.xy, 0u);
+    return found_at(traced, follow(traced.ray, traced.origin, traced.normal, jitter));
+}
+
+/// Visits every texel, and skips blocks of texels.
+@fragment
+fn fs_blocks(
+    vertex: SurfaceVertex,
+    @builtin(front_facing) front_facing: bool,
+) -> Found {
+    let traced = mirrored_ray(vertex, front_facing);
+    if traced.weight <= 0.0 {
+        return NOTHING;
+    }
+    return found_at(traced, follow_in_blocks(traced.ray, traced.origin, traced.normal));
 }

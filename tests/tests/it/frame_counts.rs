@@ -178,7 +178,7 @@ fn geometry_passes(settings: Settings) -> Vec<String> {
     let plan = plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1]));
     let graph = plan.graph();
     let passes = graph.pass_ids().filter(|pass| match graph.pass_name(*pass) {
-        "prepass" | "reflection_depth" | "velocity" | "color" => true,
+        "prepass" | "reflection_depth" | "reflection" | "velocity" | "color" => true,
         // A copy reads depth, and the drawn structure reads nothing.
         "structure" => graph.accesses_of(*pass).len() == 1,
         _ => false,
@@ -187,7 +187,7 @@ fn geometry_passes(settings: Settings) -> Vec<String> {
 }
 
 /// Effects that read the depth of the scene share that of the prepass, or draw it once with one sample per texel: the
-/// scene is drawn twice, whichever of them are on.
+/// scene is drawn twice, whichever of them are on. Reflections draw it once more, for normals and roughness.
 #[test]
 fn geometry_is_drawn_twice() {
     let half = OcclusionSettings { resolution: Resolution::Half, ..OcclusionSettings::SAO };
@@ -198,6 +198,9 @@ fn geometry_is_drawn_twice() {
                 let own = Settings { occlusion, shadows: Some(shadows), ..settings };
                 let passes = geometry_passes(own);
                 assert!(passes.len() <= 2, "{passes:?} of {own:?}");
+                let reflected = Settings { reflections: Some(ReflectionSettings::DEFAULT), ..own };
+                let passes = geometry_passes(reflected);
+                assert!(passes.len() <= 3, "{passes:?} of {reflected:?}");
             }
         }
     }

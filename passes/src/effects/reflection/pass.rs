@@ -8,7 +8,7 @@ use crate::program::{Interface, ProgramDesc, Programs};
 use framegraph::{ClearValue, DeclareError, Format, Intent, Pass, PassBuilder, Previous, Texture, TextureDesc, View};
 use framegraph_shaders::layout::ReflectionUniforms;
 use framegraph_shaders::{Module, library};
-use framegraph_wgpu::{Cx, Depth, Record, RecordError, SamplerDesc};
+use framegraph_wgpu::{Binding, Cx, Depth, Record, RecordError, SamplerDesc};
 
 /// Format of reflections: pre-exposed radiance, and its weight in alpha.
 const REFLECTION_FORMAT: Format = Format::Rgba16Float;
@@ -17,7 +17,7 @@ static SHADER: Module<'static> = library::pass("pass/reflection.wgsl").unwrap();
 
 static INTERFACE: Interface = Interface {
     groups: &[
-        &["frame", "settings", "structure", "earlier", "earlier_sampler"],
+        &["frame", "settings", "structure", "earlier", "earlier_sampler", "depth_bounds"],
         &MATERIAL_BINDINGS,
         &["objects", "origins"],
     ],
@@ -32,7 +32,11 @@ pub struct Reflection {
     pub view: ViewId,
     /// Reversed depth of the scene; its first level is read.
     pub structure: Texture,
-    /// Depth of the nearest surfaces, with one sample per texel; the result has its size.
+    /// Bounds of that depth ([`DepthBounds`](super::DepthBounds)), with all levels written. Rays then visit every texel
+    /// and skip blocks; otherwise they step by [`ReflectionSettings::stride_texels`].
+    pub bounds: Option<Texture>,
+    /// Depth of the nearest surfaces, with one sample per texel, of which the first level is tested; the result has its
+    /// size. May be the structure.
     pub depth: Texture,
     /// Pre-exposed radiance of the previous frame, seen from the previous view ([`CameraView::after`]).
     pub earlier: Previous,
@@ -46,6 +50,8 @@ pub struct Reflection {
 #[derive(Clone, Copy, Debug)]
 pub struct ReflectionIo {
     structure: View,
+    bounds: Option<View>,
+    bounds_levels: u8,
     earlier: View,
     /// Radiance premultiplied by its weight, and the weight in alpha, with level 0 written. All 0 without a previous
     /// frame.
@@ -61,12 +67,15 @@ impl Pass for Reflection {
         let extent = pass.desc(self.depth)?.extent;
         let structure = pass.sampled(self.structure.mip(0))?;
         let earlier = pass.sampled(self.earlier)?;
-        pass.depth_read_only(self.depth)?;
+        let bounds = self.bounds.map(|bounds| pass.sampled(bounds)).transpose()?;
+        let bounds_levels = self.bounds.map_or(Ok(0), |bounds| pass.desc(bounds).map(|desc| desc.mips))?;
+        pass.depth_read_only(self.depth.mip(0))?;
         let reflections = pass.texture("reflections", TextureDesc::new(extent, REFLECTION_FORMAT).mips(self.levels));
         let nothing = Intent::Clear(ClearValue::Color([0.0; 4]));
         let ways = pass.texture("reflection_hit_distance", TextureDesc::new(extent, Format::R16Float));
         let reflections = pass.color(reflections.mip(0), nothing)?;
-        Ok(ReflectionIo { structure, earlier, reflections, ways: pass.color(ways, nothing)? })
+        let ways = pass.color(ways, nothing)?;
+        Ok(ReflectionIo { structure, bounds, bounds_levels, earlier, reflections, ways })
     }
 }
 
@@ -79,14 +88,16 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
         let seen = views.get(self.view)?;
         let frame = [
             Some(cx.uniform(&seen.view.frame)),
-            Some(cx.uniform(&self.uniforms(&seen.view))),
+            Some(cx.uniform(&self.uniforms(&seen.view, io.bounds_levels))),
             Some(cx.view(io.structure)?.into()),
             Some(cx.view(io.earlier)?.into()),
             Some(cx.sampler(SamplerDesc::LINEAR).into()),
+            io.bounds.map(|bounds| cx.view(bounds)).transpose()?.map(Binding::from),
         ];
+        let fragment = Some(if io.bounds.is_some() { "fs_blocks" } else { "fs_main" });
         let program = |variant: SurfaceVariant| {
             let features = &variant.vertex_features();
-            programs.get(&ProgramDesc { features, ..ProgramDesc::new(&SHADER, &INTERFACE) })
+            programs.get(&ProgramDesc { features, fragment, ..ProgramDesc::new(&SHADER, &INTERFACE) })
         };
         let surfaces =
             SurfaceDraw { program: &program, frame: &frame, constants: &[], depth: Depth::EQUAL, colors: &[] };
@@ -97,7 +108,7 @@ impl<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized> Record<W> for
 }
 
 impl Reflection {
-    fn uniforms(&self, view: &CameraView) -> ReflectionUniforms {
+    fn uniforms(&self, view: &CameraView, bounds_levels: u8) -> ReflectionUniforms {
         let ReflectionSettings { thickness_m, bias_m, reach_m, stride_texels, most_roughness } = self.settings;
         let stand = view.stand();
         let (earlier_clip_from_view, exposure_ratio) = stand.to_earlier(view.earlier);
@@ -110,6 +121,7 @@ impl Reflection {
             stride: stride_texels,
             most_roughness,
             exposure_ratio,
+            bounds_levels: bounds_levels.into(),
             ..ReflectionUniforms::default()
         }
     }

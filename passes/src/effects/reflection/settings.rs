@@ -1,4 +1,4 @@
-//! Settings of screen-space reflections, and their table. Defaults are Filament's.
+//! Settings of screen-space reflections, and their table. Defaults are Filament's, except for the step.
 
 use crate::settings::field::{Field, number};
 use crate::settings::place::num;
@@ -14,7 +14,8 @@ pub struct ReflectionSettings {
     pub bias_m: f32,
     /// Maximum length of rays in meters, above 0.
     pub reach_m: f32,
-    /// Step size in texels of the structure, 1 or more. Larger steps are faster and miss thin objects.
+    /// Step size in texels of the structure, 1 or more. With 1, rays visit every texel and skip empty blocks. Larger
+    /// steps visit no block, and miss thin objects.
     pub stride_texels: f32,
     /// Perceptual roughness at which reflections end, 0 to 1; they fade out from three quarters of it.
     pub most_roughness: f32,
@@ -28,12 +29,12 @@ impl Default for ReflectionSettings {
 }
 
 impl ReflectionSettings {
-    /// Filament's defaults. Filament's maximum roughness is a constant, √½, without a fade.
+    /// Filament's defaults, except for its step of 2 texels. Its maximum roughness is a constant, √½, without a fade.
     pub const DEFAULT: Self = Self {
         thickness_m: 0.1,
         bias_m: 0.01,
         reach_m: 3.0,
-        stride_texels: 2.0,
+        stride_texels: 1.0,
         most_roughness: std::f32::consts::FRAC_1_SQRT_2,
     };
 }
@@ -51,7 +52,7 @@ impl SettingsTable for ReflectionSettings {
             .about("start of rays along their direction"),
         number("distance", "reach_m", [1e-3, 1e5], |s: &mut Self| num(&mut s.reach_m)).about("maximum length of rays"),
         number("stride", "stride_texels", [1.0, 64.0], |s: &mut Self| num(&mut s.stride_texels))
-            .about("step size; larger steps are faster and miss thin objects"),
+            .about("step size; with 1, rays visit every texel and skip empty blocks; larger steps miss thin objects"),
         number("roughness", "most_roughness", [0.0, 1.0], |s: &mut Self| num(&mut s.most_roughness))
             .about("perceptual roughness at which reflections end"),
     ];

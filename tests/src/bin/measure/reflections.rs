@@ -24,7 +24,7 @@ pub fn run(words: &[&str]) -> Outcome {
     let choices = [
         ("on", Resolution::Full),
         ("on", Resolution::Half),
-        ("on:stride=1", Resolution::Full),
+        ("on:stride=2", Resolution::Full),
         ("on:stride=4", Resolution::Full),
         ("on:stride=8", Resolution::Full),
         ("on:thickness=0.01", Resolution::Full),
