@@ -126,6 +126,19 @@ impl Item {
         self.values.get(1).cloned().unwrap_or_default()
     }
 
+    /// Returns all values as text.
+    ///
+    /// # Errors
+    /// One line that names the option if a value is not Unicode.
+    pub fn values(&self) -> Result<Vec<String>, String> {
+        let text = |value: &OsString| value.clone().into_string();
+        self.values
+            .iter()
+            .map(text)
+            .collect::<Result<_, _>>()
+            .map_err(|_| format!("{}: a value is not Unicode", self.name))
+    }
+
     /// Returns the first value as text.
     ///
     /// # Errors
@@ -158,12 +171,17 @@ fn line(error: &clap::Error) -> String {
     match error.kind() {
         ErrorKind::UnknownArgument if name.starts_with('-') => format!("{name}: unknown option; {remedy}"),
         ErrorKind::UnknownArgument => format!("{name}: unexpected argument; {remedy}"),
-        ErrorKind::ArgumentConflict => format!("{name}: specified twice; remove one"),
+        ErrorKind::ArgumentConflict => match text(ContextKind::PriorArg).filter(|prior| *prior != given) {
+            Some(prior) => {
+                format!("{name}: cannot be used with {}; remove one", prior.split(" <").next().unwrap_or(""))
+            }
+            None => format!("{name}: specified twice; remove one"),
+        },
         ErrorKind::InvalidValue | ErrorKind::WrongNumberOfValues | ErrorKind::TooFewValues => {
             format!("{name}: missing {}; see --help", value.trim_end_matches(['>', '.']))
         }
         ErrorKind::TooManyValues => format!("{name}: takes no value; see --help"),
-        ErrorKind::MissingRequiredArgument => format!("{given}: missing argument; see --help"),
+        ErrorKind::MissingRequiredArgument => format!("{name}: required; see --help"),
         _ => error.to_string().lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned(),
     }
 }

@@ -4,21 +4,10 @@
 //! the run. At the end, it compares the last frame with one of a fresh run. Any error ends the run.
 
 use framegraph_wgpu::{AdapterRequest, Gpu};
+use program::cli::{self, Parsed, option};
 use std::error::Error;
 use std::process::ExitCode;
 use tests::soak::{Soak, Trouble};
-
-const HELP: &str = "\
-soak: the standard frame under random sizes, effects and scenes
-
-  --frames N    frames to draw (10000)
-  --largest PX  most pixels of a side (512)
-  --rows N      rows to print (10)
-  --reload N    replace all shaders each N frames (not at all)
-  --lose N      lose the device each N frames, and make everything anew (not at all)
-
-WGPU_BACKEND=noop draws nothing and validates everything.
-";
 
 fn main() -> ExitCode {
     program::ended("soak", run())
@@ -28,20 +17,29 @@ fn run() -> Result<(), Box<dyn Error>> {
     let (mut frames, mut largest, mut rows) = (10_000_usize, 512_u32, 10_usize);
     let open = || Gpu::open(&AdapterRequest::from_env());
     let mut trouble = Trouble { reload_every: usize::MAX, lose_every: usize::MAX, open };
-    let mut arguments = lexopt::Parser::from_env();
-    while let Some(argument) = arguments.next()? {
-        use lexopt::ValueExt;
-        match argument {
-            lexopt::Arg::Long("frames") => frames = arguments.value()?.parse()?,
-            lexopt::Arg::Long("largest") => largest = arguments.value()?.parse()?,
-            lexopt::Arg::Long("rows") => rows = arguments.value()?.parse()?,
-            lexopt::Arg::Long("reload") => trouble.reload_every = arguments.value()?.parse()?,
-            lexopt::Arg::Long("lose") => trouble.lose_every = arguments.value()?.parse()?,
-            lexopt::Arg::Long("help") => {
-                program::print(HELP);
-                return Ok(());
-            }
-            other => return Err(other.unexpected().into()),
+    let about = "The standard frame under random sizes, effects and scenes";
+    let command = cli::command("soak", about, "WGPU_BACKEND=noop draws nothing and validates everything.").args([
+        option("frames", "N", "Frames to draw (10000)"),
+        option("largest", "PX", "Maximum number of pixels of a side (512)"),
+        option("rows", "N", "Rows to print (10)"),
+        option("reload", "N", "Replace all shaders each N frames (not at all)"),
+        option("lose", "N", "Lose the device each N frames, and make everything anew (not at all)"),
+    ]);
+    let given = match cli::parse(command, std::env::args_os().skip(1))? {
+        Parsed::Help(text) => {
+            program::print(text);
+            return Ok(());
+        }
+        Parsed::Given(given) => given,
+    };
+    for item in given {
+        let number = item.parse("a whole number", |text| text.parse::<usize>().ok())?;
+        match item.name() {
+            "frames" => frames = number,
+            "largest" => largest = number.try_into()?,
+            "rows" => rows = number,
+            "reload" => trouble.reload_every = number,
+            _ => trouble.lose_every = number,
         }
     }
     let gpu = open()?;
