@@ -1,54 +1,85 @@
 //! Command line of `viewer`.
 
 use framegraph::Order;
-use lexopt::{Arg, Parser, ValueExt};
+use program::clap::{self, ArgAction};
+use program::cli::{self, Parsed, argument, flag, option};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use viewer::drawing::Theme;
 use viewer::view::View;
 
-/// Text of `viewer --help`.
-pub const HELP: &str = "\
-Shows the passes, decisions and costs of a frame.
+const ABOUT: &str = "Shows the passes, decisions and costs of a frame.";
 
-usage: viewer [FILE] [options]
+const USAGE: &str = "\
+viewer [FILE] [OPTIONS]
        viewer --headless --view VIEW --plan FILE [--against FILE] --out FILE.png|svg
+       viewer --standard PRESET|SETTINGS.ron [OPTIONS]
+       viewer --live [SCENE] [--settings PRESET|SETTINGS.ron] [--environment FILE] [OPTIONS]";
 
-       viewer --standard PRESET|SETTINGS.ron [options]
-       viewer --live [SCENE] [--settings PRESET|SETTINGS.ron] [--environment FILE] [options]
+const AFTER: &str =
+    "Exit codes: 0 success, 2 invalid input or output, 3 no device or window, 128 + N stopped by signal N.";
 
-FILE is a plan (JSON, docs/reference/plan-json.md), a graph (FRAME.ron, docs/reference/graph-format.md), or a trace
-(`render --trace`). Graphs are compiled here, and again after each change. docs/reference/viewer.md shows the views.
-
-  --plan FILE         same as FILE
-  --standard PRESET   show the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings
-                      (docs/reference/settings.md); its effects are features
-  --live [SCENE]      draw the standard frame in the window and show its plan; SCENE is a glTF or GLB file or a built-in
-                      scene (spheres)
-  --settings PRESET   initial settings with --live: a preset or a FILE.ron (high)
-  --environment FILE  environment light with --live: a .hdr, .exr or .ktx picture; default: a clear sky
-  --against FILE      plan or graph to compare with
-  --trace FILE        frame times to show
-  --caps DEVICE       device for graphs: desktop, tiler, wgpu (default), or a FILE.ron that describes one
-  --size WxH          frame size in texels; default: the size in the file, else 1920x1080
-  --set FEATURE=on|off
-                      enable or disable a feature of the graph; repeatable
-  --order ORDER       declared (default) or optimized
-  --select NAME       select a pass or a resource
-  --view VIEW         graph, timeline, memory, bandwidth, inspector, diff, trace, accuracy or queues; default: the
-                      last one, graph without a window
-  --theme THEME       light or dark; default: the last one, else that of the desktop; light without a window
-  --scale X           pixels per point, 0.5 to 4 (1)
-  --headless          write --out without opening a window
-  --out FILE          output of --headless, .png or .svg
-  --picture WxH       size of a PNG in pixels; default: the size of the view
-  --whole             draw the whole application into the PNG (1280x720)
-  --frames N          draw continuously, close the window after N or N + 1 frames, and print their number
-  --measure           print the cost of the panels on this machine, without a window
-  --help              print this help
-
-Exit codes: 0 success, 2 invalid input or output, 3 no device or window, 128 + N stopped by signal N.
-";
+/// Returns the declaration of all options.
+fn command() -> clap::Command {
+    cli::command("viewer", ABOUT, AFTER).override_usage(USAGE).args([
+        argument(
+            "FILE",
+            "A plan (JSON, docs/reference/plan-json.md), a graph (FRAME.ron, docs/reference/graph-format.md), or a trace \
+             (`render --trace`). Graphs are compiled here, and again after each change. docs/reference/viewer.md shows the \
+             views",
+        ),
+        option("plan", "FILE", "Same as FILE").conflicts_with("FILE"),
+        option(
+            "standard",
+            "PRESET",
+            "Show the standard frame instead of a file: low, medium, high, ultra, or a FILE.ron of settings \
+             (docs/reference/settings.md); its effects are features",
+        )
+        .conflicts_with_all(["FILE", "plan"]),
+        flag(
+            "live",
+            "Draw the standard frame in the window and show its plan; FILE is a glTF or GLB file or a built-in scene \
+             (spheres)",
+        )
+        .conflicts_with_all(["headless", "standard"]),
+        option("settings", "PRESET", "Initial settings with --live: a preset or a FILE.ron (high)"),
+        option(
+            "environment",
+            "FILE",
+            "Environment light with --live: a .hdr, .exr or .ktx picture; default: a clear sky",
+        ),
+        option("against", "FILE", "Plan or graph to compare with"),
+        option("trace", "FILE", "Frame times to show"),
+        option(
+            "caps",
+            "DEVICE",
+            "Device for graphs: desktop, tiler, wgpu (default), or a FILE.ron that describes one",
+        ),
+        option("size", "WxH", "Frame size in texels; default: the size in the file, else 1920x1080"),
+        option("set", "FEATURE=on|off", "Enable or disable a feature of the graph; repeatable").action(ArgAction::Append),
+        option("order", "ORDER", "declared or optimized"),
+        option("select", "NAME", "Select a pass or a resource"),
+        option(
+            "view",
+            "VIEW",
+            format!("{}; default: the last one, graph without a window", View::ALL.map(View::word).join(", ")),
+        ),
+        option("theme", "THEME", "light or dark; default: the last one, else that of the desktop; light without a window"),
+        option("scale", "X", "Pixels per point, 0.5 to 4 (1)"),
+        flag("headless", "Write --out without opening a window"),
+        option("out", "FILE", "Output of --headless, .png or .svg"),
+        option("picture", "WxH", "Size of a PNG in pixels; default: the size of the view"),
+        flag("whole", "Draw the whole application into the PNG (1280x720)"),
+        option(
+            "frames",
+            "N",
+            "Draw continuously, close the window after N or N + 1 frames, and print their number",
+        )
+        .conflicts_with_all(["headless", "measure"]),
+        flag("measure", "Print the cost of the panels on this machine, without a window")
+            .conflicts_with_all(["FILE", "headless", "live", "plan", "standard"]),
+    ])
+}
 
 /// Parsed options.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,11 +126,39 @@ pub struct Args {
     pub frames: Option<u64>,
 }
 
-/// Parses the command line without the program name; `None` if help is requested.
+/// Parsed command line.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Print the help.
+    Help(String),
+    /// Show a frame.
+    Show(Box<Args>),
+}
+
+/// Parses the command line without the program name.
 ///
 /// # Errors
 /// One line that names the option and the expected value.
-pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, String> {
+pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
+    let given = match cli::parse(command(), args)? {
+        Parsed::Help(text) => return Ok(Command::Help(text)),
+        Parsed::Given(given) => given,
+    };
+    let headless = given.has("headless");
+    for (name, other) in [
+        ("out", "headless"),
+        ("whole", "headless"),
+        ("picture", "headless"),
+        ("settings", "live"),
+        ("environment", "live"),
+    ] {
+        if given.has(name) && !given.has(other) {
+            return Err(format!("--{name}: requires --{other}"));
+        }
+    }
+    if headless && !given.has("out") {
+        return Err("--headless: requires --out FILE.png or --out FILE.svg".into());
+    }
     let mut out = Args {
         file: None,
         standard: None,
@@ -122,137 +181,59 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Option<Args>, Strin
         whole: false,
         frames: None,
     };
-    let mut parser = Parser::from_args(args);
-    let mut headless = false;
-    while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
-        let option = match arg {
-            Arg::Long(name) => name.to_owned(),
-            Arg::Short(letter) => return Err(format!("unknown option `-{letter}`; see --help")),
-            Arg::Value(value) => {
-                set(&mut out.file, value.into(), "FILE")?;
-                continue;
-            }
-        };
-        match option.as_str() {
-            "help" => return Ok(None),
-            "headless" => headless = true,
+    for item in given {
+        let max = viewer::offscreen::MAX_PX;
+        match item.name() {
+            "headless" => {}
             "whole" => out.whole = true,
             "live" => out.live = true,
             "measure" => out.measure = true,
-            _ => value(&mut parser, &option, &mut out)?,
+            "FILE" | "plan" => out.file = Some(item.raw().into()),
+            "against" => out.against = Some(item.raw().into()),
+            "environment" => out.environment = Some(item.raw().into()),
+            "trace" => out.trace = Some(item.raw().into()),
+            "out" => out.out = Some(item.raw().into()),
+            "caps" => out.caps = item.text()?,
+            "select" => out.select = Some(item.text()?),
+            "standard" => out.standard = Some(item.text()?),
+            "settings" => out.settings = Some(item.text()?),
+            "size" => out.size = Some(item.parse("WxH, each from 1 to 65536 texels", |text| sides(text, 65536))?),
+            "picture" => {
+                out.picture = Some(item.parse("WxH, each from 1 to 8192 pixels", |text| sides(text, max))?);
+            }
+            "set" => out.features.push(item.parse("FEATURE=on or FEATURE=off", switch)?),
+            "order" => out.order = item.parse("declared or optimized", order)?,
+            "view" => {
+                let views = format!("one of {}", View::ALL.map(View::word).join(", "));
+                out.view = Some(item.parse(&views, |text| View::ALL.into_iter().find(|view| view.word() == text))?);
+            }
+            "theme" => out.theme = Some(item.parse("light or dark", theme)?),
+            "scale" => {
+                let scale = |text: &str| text.parse().ok().filter(|scale| (0.5..=4.0).contains(scale));
+                out.scale = item.parse("a number from 0.5 to 4", scale)?;
+            }
+            _ => out.frames = Some(item.parse("a whole number of frames", |text| text.parse().ok())?),
         }
-    }
-    match (headless, &out.out) {
-        (true, None) => return Err("--headless: requires --out FILE.png or --out FILE.svg".into()),
-        (false, Some(_)) => return Err("--out: requires --headless".into()),
-        _ => {}
-    }
-    let without_window =
-        [(headless, "--headless"), (out.measure, "--measure")].into_iter().find(|(present, _)| *present);
-    if let (Some((_, other)), true) = (without_window, out.frames.is_some()) {
-        return Err(format!("--frames: cannot be used with {other}; it has no window"));
-    }
-    if out.measure && (headless || out.live || out.file.is_some() || out.standard.is_some()) {
-        return Err("--measure: cannot be combined with other modes or a FILE; it measures its own plans".into());
-    }
-    if !headless && (out.whole || out.picture.is_some()) {
-        return Err("--whole, --picture: require --headless".into());
-    }
-    if out.standard.is_some() && out.file.is_some() {
-        return Err("--standard: cannot be used with a FILE".into());
-    }
-    if out.live && (headless || out.standard.is_some()) {
-        return Err("--live: cannot be used with --headless or --standard".into());
-    }
-    if !out.live && (out.settings.is_some() || out.environment.is_some()) {
-        return Err("--settings, --environment: require --live".into());
     }
     if headless && out.file.is_none() && out.standard.is_none() && out.view.unwrap_or(View::Graph).is_of_a_plan() {
         return Err("--headless: requires a file; add --plan FILE".into());
     }
-    Ok(Some(out))
+    Ok(Command::Show(Box::new(out)))
 }
 
-/// Parses the value of one option.
-fn value(parser: &mut Parser, option: &str, out: &mut Args) -> Result<(), String> {
-    const KNOWN: [&str; 17] = [
-        "standard",
-        "settings",
-        "environment",
-        "plan",
-        "against",
-        "trace",
-        "caps",
-        "size",
-        "set",
-        "order",
-        "select",
-        "view",
-        "theme",
-        "scale",
-        "out",
-        "picture",
-        "frames",
-    ];
-    if !KNOWN.contains(&option) {
-        return Err(format!("unknown option `--{option}`; see --help"));
+fn order(text: &str) -> Option<Order> {
+    match text {
+        "declared" => Some(Order::Declared),
+        "optimized" => Some(Order::Optimized),
+        _ => None,
     }
-    let name = format!("--{option}");
-    let value = parser.value().map_err(|_| format!("{name}: missing value; see --help"))?;
-    match option {
-        "plan" => return set(&mut out.file, value.into(), "FILE"),
-        "against" => return set(&mut out.against, value.into(), &name),
-        "environment" => return set(&mut out.environment, value.into(), &name),
-        "trace" => return set(&mut out.trace, value.into(), &name),
-        "out" => return set(&mut out.out, value.into(), &name),
-        _ => {}
-    }
-    let value = value.string().map_err(|_| format!("{name}: the value is not UTF-8"))?;
-    let wrong = |expected: &str| format!("{name}: invalid value `{value}`; expected {expected}");
-    match option {
-        "caps" => out.caps = value,
-        "select" => out.select = Some(value),
-        "standard" => out.standard = Some(value),
-        "settings" => out.settings = Some(value),
-        "size" => out.size = Some(sides(&value, 65536).ok_or_else(|| wrong("WxH, each from 1 to 65536 texels"))?),
-        "picture" => {
-            let max = viewer::offscreen::MAX_PX;
-            out.picture = Some(sides(&value, max).ok_or_else(|| wrong("WxH, each from 1 to 8192 pixels"))?);
-        }
-        "set" => out.features.push(switch(&value).ok_or_else(|| wrong("FEATURE=on or FEATURE=off"))?),
-        "order" => {
-            out.order = match value.as_str() {
-                "declared" => Order::Declared,
-                "optimized" => Order::Optimized,
-                _ => return Err(wrong("declared or optimized")),
-            };
-        }
-        "view" => {
-            let views = View::ALL.map(View::word).join(", ");
-            let named = View::ALL.into_iter().find(|view| view.word() == value);
-            out.view = Some(named.ok_or_else(|| wrong(&format!("one of {views}")))?);
-        }
-        "theme" => {
-            out.theme = match value.as_str() {
-                "light" => Some(Theme::Light),
-                "dark" => Some(Theme::Dark),
-                _ => return Err(wrong("light or dark")),
-            };
-        }
-        "scale" => {
-            let scale = value.parse().ok().filter(|scale| (0.5..=4.0).contains(scale));
-            out.scale = scale.ok_or_else(|| wrong("a number from 0.5 to 4"))?;
-        }
-        _ => out.frames = Some(value.parse().map_err(|_| wrong("a whole number of frames"))?),
-    }
-    Ok(())
 }
 
-/// Stores a value and rejects a second one.
-fn set(place: &mut Option<PathBuf>, value: PathBuf, name: &str) -> Result<(), String> {
-    match place.replace(value) {
-        None => Ok(()),
-        Some(_) => Err(format!("{name}: specified twice; remove one")),
+fn theme(text: &str) -> Option<Theme> {
+    match text {
+        "light" => Some(Theme::Light),
+        "dark" => Some(Theme::Dark),
+        _ => None,
     }
 }
 
@@ -275,7 +256,7 @@ fn switch(value: &str) -> Option<(String, bool)> {
 mod tests {
     use super::*;
 
-    fn parsed(line: &str) -> Result<Option<Args>, String> {
+    fn parsed(line: &str) -> Result<Command, String> {
         parse(line.split_whitespace().map(OsString::from))
     }
 
@@ -284,37 +265,37 @@ mod tests {
         let line = "--headless --view memory --plan a.json --against b.ron --trace t.json --caps tiler --size 64x32 \
                     --set msaa=on --order optimized --select hdr --theme dark --scale 2 --out c.png --picture 640x360 \
                     --whole";
-        let args = parsed(line).expect("the line is sound").expect("no help is asked for");
+        let Ok(Command::Show(args)) = parsed(line) else { panic!("the line is sound") };
         assert_eq!((args.file, args.against), (Some("a.json".into()), Some("b.ron".into())));
         assert_eq!((args.view, args.theme, args.scale), (Some(View::Memory), Some(Theme::Dark), 2.0));
         assert_eq!((args.size, args.picture, args.whole), (Some([64, 32]), Some([640, 360]), true));
         assert_eq!((args.features, args.order), (vec![("msaa".into(), true)], Order::Optimized));
-        assert_eq!(parsed("--help --capz"), Ok(None));
+        assert!(matches!(parsed("--help --capz"), Ok(Command::Help(_))));
     }
 
     #[test]
     fn every_mistake_is_one_line_that_names_it() {
         for (line, named) in [
-            ("a.ron b.ron", "FILE: specified twice"),
-            ("a.ron --plan b.ron", "FILE: specified twice"),
+            ("a.ron b.ron", "b.ron: unexpected argument"),
+            ("a.ron --plan b.ron", "cannot be used with"),
             ("--live --standard low", "--live"),
-            ("--settings low", "require --live"),
-            ("--frames 3 --headless --plan a.json --out a.png", "--frames: cannot be used with --headless"),
-            ("a.json --measure", "--measure: cannot"),
-            ("a.json --whole", "require --headless"),
-            ("a.json --picture 8x8", "require --headless"),
-            ("--capz tiler", "--capz"),
+            ("--settings low", "--settings: requires --live"),
+            ("--frames 3 --headless --plan a.json --out a.png", "--frames: cannot be used with"),
+            ("a.json --measure", "cannot be used with"),
+            ("a.json --whole", "requires --headless"),
+            ("a.json --picture 8x8", "requires --headless"),
+            ("--capz tiler", "--capz: unknown option; did you mean `--caps`?"),
             ("-x", "-x"),
             ("a.ron --standard low", "--standard"),
             ("--caps", "--caps"),
-            ("--view picture", "--view: invalid value `picture`"),
-            ("--size 0x4", "--size: invalid value `0x4`"),
-            ("--picture 9000x1", "--picture: invalid value `9000x1`"),
-            ("--scale 9", "--scale: invalid value `9`"),
-            ("--theme blue", "--theme: invalid value `blue`"),
+            ("--view picture", "--view picture: expected one of"),
+            ("--size 0x4", "--size 0x4: expected"),
+            ("--picture 9000x1", "--picture 9000x1: expected"),
+            ("--scale 9", "--scale 9: expected"),
+            ("--theme blue", "--theme blue: expected"),
             ("--order best", "declared or optimized"),
-            ("--set =on", "--set: invalid value `=on`"),
-            ("--frames x", "--frames: invalid value `x`"),
+            ("--set =on", "--set =on: expected"),
+            ("--frames x", "--frames x: expected"),
             ("--headless --plan a.json", "--out"),
             ("--out a.png", "--headless"),
             ("--headless --out a.png", "--plan"),

@@ -25,9 +25,9 @@ pub enum Failure {
 
 fn main() -> ExitCode {
     let args = match args::parse(std::env::args_os().skip(1)) {
-        Ok(Some(args)) => args,
-        Ok(None) => {
-            program::print(args::HELP);
+        Ok(args::Command::Show(args)) => args,
+        Ok(args::Command::Help(text)) => {
+            program::print(text);
             return program::exit(0);
         }
         Err(message) => {

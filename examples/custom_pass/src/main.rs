@@ -28,8 +28,8 @@ impl Failure {
 fn main() -> ExitCode {
     let args = match args::parse(std::env::args_os().skip(1)) {
         Ok(Command::Draw(args)) => args,
-        Ok(Command::Help) => {
-            program::line(args::HELP);
+        Ok(Command::Help(text)) => {
+            program::print(text);
             return program::exit(0);
         }
         Err(message) => return fail(2, &message),

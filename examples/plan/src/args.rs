@@ -3,8 +3,9 @@
 use crate::queues;
 use framegraph::Order;
 use framegraph_queues::QueueLayout;
-use lexopt::{Arg, Parser, ValueExt};
 use program::budget::Budget;
+use program::clap::{self, ArgAction};
+use program::cli::{self, Given, Parsed, argument, flag, option};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -74,7 +75,7 @@ pub enum Format {
 #[derive(Clone, Debug)]
 pub enum Command {
     /// Print the help.
-    Help,
+    Help(String),
     /// List plugin kinds.
     Plugins,
     /// Plan a frame.
@@ -83,141 +84,162 @@ pub enum Command {
     Offsets(OffsetsArgs),
 }
 
-/// Options as specified, before defaults apply.
-#[derive(Debug, Default)]
-struct ExplicitOptions {
-    frame: Option<PathBuf>,
-    caps: Option<String>,
-    size_texels: Option<[u32; 2]>,
-    switches: Vec<(String, bool)>,
-    order: Option<Order>,
-    format: Option<Format>,
-    diff: Option<PathBuf>,
-    budget: Option<Budget>,
-    out: Option<PathBuf>,
-    offsets: Option<PathBuf>,
-    budget_steps: Option<u64>,
-    seconds: Option<u32>,
-    queues: Option<Option<QueueLayout>>,
-    costs: Option<PathBuf>,
-}
-
 /// Default of `--budget-steps`.
 const BUDGET_STEPS: u64 = 150_000_000;
+
+const ABOUT: &str = "\
+Compiles a frame graph from a file without a GPU and prints the plan.";
+
+const USAGE: &str = "\
+plan FRAME.ron [OPTIONS]
+       plan --offsets FILE.csv [--budget-steps N] [--seconds S] [--out FILE]";
+
+const AFTER: &str = "Exit codes: 0 success, 1 budget exceeded, 2 invalid input or output, 128 + N stopped by signal N.";
+
+/// Returns the declaration of all options.
+fn command() -> clap::Command {
+    cli::command("plan", ABOUT, AFTER).override_usage(USAGE).args([
+        argument("FRAME.ron", "A graph; docs/reference/graph-format.md documents its fields"),
+        option("caps", "DEVICE", "desktop, tiler, wgpu (default), or a FILE.ron that describes a device"),
+        option("size", "WxH", "Frame size in texels; default: the size in the file, else 1920x1080"),
+        option("set", "FEATURE=on|off", "Enable or disable a feature of the file; repeatable").action(ArgAction::Append),
+        option("order", "ORDER", "declared (default) or optimized"),
+        option("format", "FORMAT", "text (default), json (docs/reference/plan-json.md), dot, mermaid or svg"),
+        option(
+            "diff",
+            "OTHER.ron",
+            "Print the changes from FRAME.ron to OTHER.ron for the same device, size and features, as text or json; a \
+             feature that only one file has is set in that file",
+        ),
+        option(
+            "budget",
+            "LIMITS",
+            "Exit with code 1 and list the responsible decisions if a limit is exceeded. LIMITS is NAME=MAX,... with the \
+             names loads (attachments loaded from memory: unresolves), stores (attachments stored to memory: resolves), \
+             steps, culled (passes), bytes (memory of transient resources) and traffic (bytes loaded and stored). bytes \
+             and traffic accept B, kB, MB, GB (powers of 1000), KiB, MiB and GiB (powers of 1024): --budget \
+             loads=0,stores=3,bytes=200MB",
+        ),
+        option(
+            "queues",
+            "LAYOUT",
+            "Schedule the frame on several queues where that is faster: one, async-compute, async-compute-and-copy, or \
+             device for the queues of --caps. Prints the queue of each step, the waits and the frame time, as text or svg",
+        ),
+        option(
+            "costs",
+            "FILE",
+            "Cost of each pass for --queues, in lines `PASS,MICROSECONDS`; default: estimated from bytes",
+        ),
+        option("out", "FILE", "Write to FILE instead of standard output"),
+        option(
+            "offsets",
+            "FILE.csv",
+            "Pack intervals `id,lower,upper,size` (MiniMalloc's format) into one heap and print them with an `offset` \
+             column. `start` and `begin` are synonyms of `lower`; `end` is an inclusive `upper`. Top and lower bound go to \
+             standard error, every second during the search. A signal stops the search and prints the best offsets found \
+             so far",
+        )
+        .conflicts_with_all(["FRAME.ron", "caps", "size", "set", "order", "format", "diff", "budget", "queues", "costs"]),
+        option("budget-steps", "N", "Maximum number of search steps for --offsets (150000000)"),
+        option("seconds", "S", "Time limit of the search in seconds (none)"),
+        flag("plugins", "List the plugin kinds that files can name, with their slots"),
+    ])
+}
 
 /// Parses the command line; `args` excludes the program name.
 ///
 /// # Errors
 /// One line that names the option and the expected value.
 pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
-    let mut parser = Parser::from_args(args);
-    let mut explicit = ExplicitOptions::default();
-    while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
-        let option = match &arg {
-            Arg::Long(name) => (*name).to_owned(),
-            Arg::Short(letter) => {
-                return Err(format!("unknown option `-{letter}`; see --help"));
-            }
-            Arg::Value(value) => {
-                let value = PathBuf::from(value);
-                set(&mut explicit.frame, value, "FRAME.ron")?;
-                continue;
-            }
-        };
-        if option == "help" {
-            return Ok(Command::Help);
-        }
-        if option == "plugins" {
-            return Ok(Command::Plugins);
-        }
-        take(&mut parser, &option, &mut explicit)?;
+    let given = match cli::parse(command(), args)? {
+        Parsed::Help(text) => return Ok(Command::Help(text)),
+        Parsed::Given(given) => given,
+    };
+    if given.has("plugins") {
+        return Ok(Command::Plugins);
     }
-    finish(explicit)
+    for (name, other) in [("budget-steps", "offsets"), ("seconds", "offsets"), ("costs", "queues")] {
+        if given.has(name) && !given.has(other) {
+            return Err(format!("--{name}: requires --{other}"));
+        }
+    }
+    let file = given.values("offsets").next().map(PathBuf::from);
+    if let Some(file) = file {
+        return offsets(file, given).map(Command::Offsets);
+    }
+    let mut found = Args {
+        frame: PathBuf::new(),
+        caps: "wgpu".into(),
+        size_texels: None,
+        switches: Vec::new(),
+        order: Order::default(),
+        format: Format::Text,
+        diff: None,
+        budget: Budget::default(),
+        out: None,
+        queues: None,
+    };
+    if !given.has("FRAME.ron") {
+        return Err("FRAME.ron: missing argument; see --help".into());
+    }
+    let mut costs = None;
+    for item in given {
+        match item.name() {
+            "FRAME.ron" => found.frame = item.raw().into(),
+            "caps" => found.caps = item.text()?,
+            "size" => found.size_texels = Some(item.parse("WxH, each from 1 to 65536 texels", size)?),
+            "set" => found.switches.push(item.parse("FEATURE=on or FEATURE=off", switch)?),
+            "order" => found.order = item.parse("declared or optimized", order)?,
+            "format" => found.format = item.parse("text, json, dot, mermaid or svg", format)?,
+            "diff" => found.diff = Some(item.raw().into()),
+            "budget" => found.budget = Budget::parse(&item.text()?).map_err(|error| format!("--budget: {error}"))?,
+            "queues" => found.queues = Some(QueuesArgs { layout: queues::layout(&item.text()?)?, costs: None }),
+            "costs" => costs = Some(item.raw().into()),
+            _ => found.out = Some(item.raw().into()),
+        }
+    }
+    if let Some(queues) = &mut found.queues {
+        queues.costs = costs;
+        if found.diff.is_some() || !matches!(found.format, Format::Text | Format::Svg) {
+            return Err("--queues: available with --format text or svg and without --diff".into());
+        }
+    }
+    if found.diff.is_some() && !matches!(found.format, Format::Text | Format::Json) {
+        return Err("--diff: requires --format text or json".into());
+    }
+    Ok(Command::Plan(Box::new(found)))
 }
 
-/// Parses the value of one option.
-fn take(parser: &mut Parser, option: &str, explicit: &mut ExplicitOptions) -> Result<(), String> {
-    const KNOWN: [&str; 13] = [
-        "caps",
-        "size",
-        "set",
-        "order",
-        "format",
-        "diff",
-        "budget",
-        "out",
-        "offsets",
-        "budget-steps",
-        "seconds",
-        "queues",
-        "costs",
-    ];
-    if !KNOWN.contains(&option) {
-        return Err(format!("unknown option `--{option}`; see --help"));
+fn offsets(file: PathBuf, given: Given) -> Result<OffsetsArgs, String> {
+    let mut found = OffsetsArgs { file, budget_steps: BUDGET_STEPS, seconds: None, out: None };
+    for item in given {
+        match item.name() {
+            "budget-steps" => found.budget_steps = item.parse("a whole number of steps", |text| text.parse().ok())?,
+            "seconds" => found.seconds = Some(item.parse("a whole number of seconds", |text| text.parse().ok())?),
+            "out" => found.out = Some(item.raw().into()),
+            _ => {}
+        }
     }
-    let value = parser.value().map_err(|_| format!("--{option}: missing value; see --help"))?;
-    if matches!(option, "diff" | "out" | "offsets" | "costs") {
-        let place = match option {
-            "diff" => &mut explicit.diff,
-            "out" => &mut explicit.out,
-            "costs" => &mut explicit.costs,
-            _ => &mut explicit.offsets,
-        };
-        return set(place, value.into(), &format!("--{option}"));
-    }
-    let value = value.string().map_err(|_| format!("--{option}: the value is not UTF-8"))?;
-    let wrong = |expected: &str| format!("--{option}: invalid value `{value}`; expected {expected}");
-    let name = format!("--{option}");
-    match option {
-        "caps" => set(&mut explicit.caps, value, &name),
-        "size" => {
-            let size = size(&value).ok_or_else(|| wrong("WxH, each from 1 to 65536 texels"))?;
-            set(&mut explicit.size_texels, size, &name)
-        }
-        "set" => {
-            explicit.switches.push(switch(&value).ok_or_else(|| wrong("FEATURE=on or FEATURE=off"))?);
-            Ok(())
-        }
-        "order" => {
-            let order = match value.as_str() {
-                "declared" => Order::Declared,
-                "optimized" => Order::Optimized,
-                _ => return Err(wrong("declared or optimized")),
-            };
-            set(&mut explicit.order, order, &name)
-        }
-        "format" => {
-            let format = match value.as_str() {
-                "text" => Format::Text,
-                "json" => Format::Json,
-                "dot" => Format::Dot,
-                "mermaid" => Format::Mermaid,
-                "svg" => Format::Svg,
-                _ => return Err(wrong("text, json, dot, mermaid or svg")),
-            };
-            set(&mut explicit.format, format, &name)
-        }
-        "budget" => {
-            let budget = Budget::parse(&value).map_err(|e| format!("--budget: {e}"))?;
-            set(&mut explicit.budget, budget, &name)
-        }
-        "queues" => set(&mut explicit.queues, queues::layout(&value)?, &name),
-        "seconds" => {
-            let seconds = value.parse().map_err(|_| wrong("a whole number of seconds"))?;
-            set(&mut explicit.seconds, seconds, &name)
-        }
-        _ => {
-            let steps = value.parse().map_err(|_| wrong("a whole number of steps"))?;
-            set(&mut explicit.budget_steps, steps, &name)
-        }
+    Ok(found)
+}
+
+fn order(text: &str) -> Option<Order> {
+    match text {
+        "declared" => Some(Order::Declared),
+        "optimized" => Some(Order::Optimized),
+        _ => None,
     }
 }
 
-/// Stores a value and rejects a second one.
-fn set<T>(place: &mut Option<T>, value: T, name: &str) -> Result<(), String> {
-    match place.replace(value) {
-        None => Ok(()),
-        Some(_) => Err(format!("{name}: specified twice; remove one")),
+fn format(text: &str) -> Option<Format> {
+    match text {
+        "text" => Some(Format::Text),
+        "json" => Some(Format::Json),
+        "dot" => Some(Format::Dot),
+        "mermaid" => Some(Format::Mermaid),
+        "svg" => Some(Format::Svg),
+        _ => None,
     }
 }
 
@@ -235,73 +257,6 @@ fn switch(value: &str) -> Option<(String, bool)> {
         _ => return None,
     };
     (!feature.is_empty()).then(|| (feature.to_owned(), on))
-}
-
-/// Checks combinations of options and applies defaults.
-fn finish(explicit: ExplicitOptions) -> Result<Command, String> {
-    let ExplicitOptions {
-        frame,
-        caps,
-        size_texels,
-        switches,
-        order,
-        format,
-        diff,
-        budget,
-        out,
-        offsets,
-        queues,
-        costs,
-        ..
-    } = explicit;
-    if let Some(file) = offsets {
-        let alone = [
-            (frame.is_some(), "FRAME.ron"),
-            (caps.is_some(), "--caps"),
-            (size_texels.is_some(), "--size"),
-            (!switches.is_empty(), "--set"),
-            (order.is_some(), "--order"),
-            (format.is_some(), "--format"),
-            (diff.is_some(), "--diff"),
-            (budget.is_some(), "--budget"),
-            (queues.is_some(), "--queues"),
-            (costs.is_some(), "--costs"),
-        ];
-        if let Some((_, other)) = alone.into_iter().find(|(present, _)| *present) {
-            return Err(format!("{other}: not available with --offsets; remove one of both"));
-        }
-        let budget_steps = explicit.budget_steps.unwrap_or(BUDGET_STEPS);
-        return Ok(Command::Offsets(OffsetsArgs { file, budget_steps, seconds: explicit.seconds, out }));
-    }
-    for (present, name) in
-        [(explicit.budget_steps.is_some(), "--budget-steps"), (explicit.seconds.is_some(), "--seconds")]
-    {
-        if present {
-            return Err(format!("{name}: requires --offsets"));
-        }
-    }
-    let format = format.unwrap_or(Format::Text);
-    if costs.is_some() && queues.is_none() {
-        return Err("--costs: requires --queues".into());
-    }
-    if queues.is_some() && (diff.is_some() || !matches!(format, Format::Text | Format::Svg)) {
-        return Err("--queues: available with --format text or svg and without --diff".into());
-    }
-    if diff.is_some() && !matches!(format, Format::Text | Format::Json) {
-        return Err("--diff: requires --format text or json".into());
-    }
-    Ok(Command::Plan(Box::new(Args {
-        frame: frame.ok_or("FRAME.ron: missing argument; see --help")?,
-        caps: caps.unwrap_or_else(|| "wgpu".into()),
-        size_texels,
-        switches,
-        order: order.unwrap_or_default(),
-        format,
-        diff,
-        budget: budget.unwrap_or_default(),
-        out,
-        queues: queues.map(|layout| QueuesArgs { layout, costs }),
-    })))
 }
 
 #[cfg(test)]
@@ -324,7 +279,7 @@ mod tests {
         assert_eq!(args.switches, [("msaa".into(), true), ("fxaa".into(), false)]);
         assert_eq!((args.order, args.format), (Order::Optimized, Format::Json));
         assert_eq!((args.diff, args.out), (Some("b.ron".into()), Some("c.json".into())));
-        assert!(matches!(parsed("--help a b c"), Ok(Command::Help)));
+        assert!(matches!(parsed("--help a b c"), Ok(Command::Help(_))));
         assert!(matches!(parsed("--plugins"), Ok(Command::Plugins)));
         let Ok(Command::Offsets(args)) = parsed("--offsets a.csv --budget-steps 7") else {
             panic!("the line is sound");
@@ -336,17 +291,17 @@ mod tests {
     fn every_mistake_is_one_line_that_names_it() {
         for (line, named) in [
             ("", "FRAME.ron"),
-            ("a.ron b.ron", "FRAME.ron: specified twice"),
-            ("a.ron --capz tiler", "--capz"),
+            ("a.ron b.ron", "b.ron: unexpected argument"),
+            ("a.ron --capz tiler", "--capz: unknown option; did you mean `--caps`?"),
             ("a.ron -x", "-x"),
             ("a.ron --caps", "--caps"),
-            ("a.ron --size 0x4", "--size: invalid value `0x4`"),
-            ("a.ron --size 4", "--size: invalid value `4`"),
+            ("a.ron --size 0x4", "--size 0x4: expected WxH"),
+            ("a.ron --size 4", "--size 4: expected"),
             ("a.ron --size 4x99999999999", "--size"),
-            ("a.ron --set msaa", "--set: invalid value `msaa`"),
-            ("a.ron --set =on", "--set: invalid value `=on`"),
+            ("a.ron --set msaa", "--set msaa: expected"),
+            ("a.ron --set =on", "--set =on: expected"),
             ("a.ron --order best", "declared or optimized"),
-            ("a.ron --format png", "--format: invalid value `png`"),
+            ("a.ron --format png", "--format png: expected"),
             ("a.ron --budget loads=-1", "--budget: loads"),
             ("a.ron --caps a --caps b", "--caps: specified twice"),
             ("a.ron --diff b.ron --format svg", "--diff"),
@@ -354,8 +309,8 @@ mod tests {
             ("a.ron --queues many", "`many`; expected device, one, async-compute"),
             ("a.ron --queues one --format dot", "--queues: available"),
             ("a.ron --costs b.csv", "--costs: requires --queues"),
-            ("a.ron --offsets b.csv", "FRAME.ron: not available"),
-            ("--offsets b.csv --budget-steps x", "--budget-steps: invalid value `x`"),
+            ("a.ron --offsets b.csv", "cannot be used with"),
+            ("--offsets b.csv --budget-steps x", "--budget-steps x: expected"),
         ] {
             let error = parsed(line).expect_err(line);
             assert!(error.contains(named) && !error.contains('\n'), "{line}: {error}");

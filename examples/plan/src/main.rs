@@ -4,7 +4,6 @@
 //! budgets.
 
 mod args;
-mod help;
 mod offsets;
 mod output;
 mod plugins;
@@ -19,8 +18,8 @@ fn main() -> ExitCode {
     interrupt::exit_when_asked();
     let outcome = match args::parse(std::env::args_os().skip(1)) {
         Err(message) => Err(run::Failure::Input(message)),
-        Ok(Command::Help) => {
-            program::print(help::HELP);
+        Ok(Command::Help(text)) => {
+            program::print(text);
             Ok(())
         }
         Ok(Command::Plugins) => {

@@ -5,6 +5,7 @@
 //! - [`input`]: input files, which must be regular files.
 //! - [`interrupt`] (feature `run`): SIGINT and SIGTERM as a flag that long work polls at each step.
 //! - [`bytes`](fn@crate::bytes) (feature `run`): byte counts with units.
+//! - [`cli`] (feature `cli`): command lines.
 //! - [`budget`] (feature `budget`): limits on the cost of a plan.
 //! - [`progress`] (feature `run`): progress on standard error.
 
@@ -12,6 +13,8 @@
 pub mod budget;
 #[cfg(feature = "run")]
 mod bytes;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod input;
 #[cfg(feature = "run")]
 pub mod interrupt;
@@ -29,4 +32,6 @@ mod target;
 
 #[cfg(feature = "run")]
 pub use bytes::bytes;
+#[cfg(feature = "cli")]
+pub use clap;
 pub use print::{ended, error, exit, line, no_arguments, note, print};

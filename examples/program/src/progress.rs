@@ -1,8 +1,9 @@
 //! Progress on standard error.
 //!
-//! On a terminal, one line is overwritten. Elsewhere a line is printed when a stage is done, and every five seconds
-//! while it lasts.
+//! On a terminal, one line is overwritten, by `indicatif`. Elsewhere a line is printed when a stage is done, and every
+//! five seconds while it lasts.
 
+use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -13,28 +14,35 @@ const PAUSE: Duration = Duration::from_secs(5);
 /// Progress display.
 #[derive(Debug)]
 pub struct Shown {
-    terminal: bool,
+    bar: ProgressBar,
     stage: String,
     last: Instant,
 }
 
 impl Default for Shown {
     fn default() -> Self {
-        Self { terminal: io::stderr().is_terminal(), stage: String::new(), last: Instant::now() }
+        Self { bar: bar(), stage: String::new(), last: Instant::now() }
     }
+}
+
+fn bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{prefix} {pos}/{len} [{bar:24}] {wide_msg}");
+    ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
 impl Shown {
     /// Reports `done` of `total` items of a stage. `item` names the latest one and may be empty.
     pub fn step(&mut self, stage: impl Display, done: usize, total: usize, item: &str) {
-        let mut err = io::stderr().lock();
-        // Failing to print must not stop the work.
-        if self.terminal {
-            let _ = write!(err, "\r\x1b[K{stage} {done}/{total} {item}");
-            let _ = err.flush();
+        let stage = stage.to_string();
+        if io::stderr().is_terminal() {
+            self.bar.set_length(total as u64);
+            self.bar.set_prefix(stage);
+            self.bar.set_message(item.to_owned());
+            self.bar.set_position(done as u64);
             return;
         }
-        let stage = stage.to_string();
+        // Failing to print must not stop the work.
+        let mut err = io::stderr().lock();
         if done == total && self.stage != stage {
             let _ = writeln!(err, "{stage}: {total}");
             (self.stage, self.last) = (stage, Instant::now());
@@ -45,9 +53,7 @@ impl Shown {
     }
 
     /// Clears the progress line before other output.
-    pub fn clear(&self) {
-        if self.terminal {
-            let _ = write!(io::stderr().lock(), "\r\x1b[K");
-        }
+    pub fn clear(&mut self) {
+        std::mem::replace(&mut self.bar, bar()).finish_and_clear();
     }
 }

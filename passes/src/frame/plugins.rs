@@ -137,7 +137,12 @@ pub fn registry<'p, H: Host + ?Sized + 'p>() -> Registry<'p, H> {
         let (structure, occlusion) = (input(call, STRUCTURE)?, input(call, INPUT)?);
         let axis = if params(call, false)? { Axis::Down } else { Axis::Across };
         let blur = Blur::high(SaoQuality::Ultra.sigma());
-        made(host, call, &OcclusionBlur { view: ViewId::MAIN, structure, occlusion, blur, axis }, |io| io.blurred)
+        made(
+            host,
+            call,
+            &OcclusionBlur { view: ViewId::MAIN, structure, occlusion, blur, axis, bent_normals: false },
+            |io| io.blurred,
+        )
     });
     add("velocity", &[DEPTH, OUTPUT], |host, call| {
         let depth = input(call, DEPTH)?;

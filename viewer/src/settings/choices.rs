@@ -19,7 +19,9 @@ pub fn alternatives(path: &str) -> Option<Alternatives> {
                 section.choose(&mut frame, method);
                 frame
             });
-            all.insert(section.path.to_owned(), values(section.path, frames));
+            if !section.methods.is_empty() {
+                all.insert(section.path.to_owned(), values(section.path, frames));
+            }
             for row in &section.rows {
                 let frames = row.alternatives.iter().filter_map(|text| {
                     let mut frame = row.frame;

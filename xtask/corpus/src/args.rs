@@ -1,16 +1,14 @@
 //! The command line of `corpus`.
 
-use lexopt::prelude::*;
+use program::clap;
+use program::cli::{self, Parsed, argument, option};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Text of `corpus --help`.
-pub const HELP: &str = "\
-Renders every .gltf and .glb file below a folder, and reports the verdict on each.
+const ABOUT: &str = "Renders every .gltf and .glb file below a folder, and reports the verdict on each.";
 
-usage: cargo xtask corpus DIR [options] [-- OPTIONS OF render]
-
+const AFTER: &str = "\
 Each file is rendered by its own `render` process. Verdicts:
   ok          a picture, all of whose radiance is finite
   non-finite  a picture with NaN or infinity in its radiance
@@ -20,19 +18,34 @@ Each file is rendered by its own `render` process. Verdicts:
   hung        stopped after --seconds
   memory      stopped above --memory
 
-  --out FOLDER         results: corpus.json, sheet-1.png and further pages, pictures/, and the state from which an
-                       interrupted run resumes (target/corpus)
-  --jobs N             processes at a time (the number of cores)
-  --seconds N          time limit of a file in seconds (120)
-  --memory SIZE        limit on the resident memory of a process, checked on Linux only; `render --memory` gets half of
-                       it (2GiB)
-  --size WxH           size of the pictures in pixels (128x128)
-  --render PROGRAM     the `render` program (beside this program)
-  --help               this text
-
 A second run with the same options takes finished files from the state, unless the file or `render` has changed since.
 Exit codes: 0 each file is ok or refused, 1 another verdict was given, 2 bad input or output, 128 and its number after a
 signal.";
+
+/// Returns the declaration of all options.
+fn command() -> clap::Command {
+    cli::command("corpus", ABOUT, AFTER)
+        .override_usage("cargo xtask corpus DIR [OPTIONS] [-- OPTIONS OF render]")
+        .args([
+            argument("DIR", "Folder whose files are rendered"),
+            option(
+                "out",
+                "FOLDER",
+                "Results: corpus.json, sheet-1.png and further pages, pictures/, and the state from which an interrupted \
+                 run resumes (target/corpus)",
+            ),
+            option("jobs", "N", "Processes at a time (the number of cores)"),
+            option("seconds", "N", "Time limit of a file in seconds (120)"),
+            option(
+                "memory",
+                "SIZE",
+                "Limit on the resident memory of a process, checked on Linux only; `render --memory` gets half of it \
+                 (2GiB)",
+            ),
+            option("size", "WxH", "Size of the pictures in pixels (128x128)"),
+            option("render", "PROGRAM", "The `render` program (in the folder of this program)"),
+        ])
+}
 
 /// Options of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,7 +72,7 @@ pub struct Args {
 #[derive(Debug, PartialEq, Eq)]
 pub enum Command {
     /// Print the help text.
-    Help,
+    Help(String),
     /// Render the files of a folder.
     Run(Args),
 }
@@ -74,7 +87,6 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Command, S
         Some(at) => arguments.split_off(at).into_iter().skip(1).map(text).collect::<Result<_, _>>()?,
         None => Vec::new(),
     };
-    let mut folder = None;
     let mut args = Args {
         folder: PathBuf::new(),
         out: PathBuf::from("target/corpus"),
@@ -85,40 +97,31 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Command, S
         render: PathBuf::new(),
         further,
     };
-    let mut parser = lexopt::Parser::from_args(arguments);
-    while let Some(argument) = parser.next().map_err(|error| error.to_string())? {
-        let name = match &argument {
-            Long(name) => format!("--{name}"),
-            Short(letter) => format!("-{letter}"),
-            Value(path) => {
-                if folder.replace(PathBuf::from(path)).is_some() {
-                    return Err(format!("`{}`: one folder is rendered at a time", path.to_string_lossy()));
-                }
-                continue;
-            }
+    let given = match cli::parse(command(), arguments)? {
+        Parsed::Help(text) => return Ok(Command::Help(text)),
+        Parsed::Given(given) => given,
+    };
+    if !given.has("DIR") {
+        return Err("DIR: no folder is named; see --help".into());
+    }
+    for item in given {
+        let whole = |max: u64| {
+            let number = |text: &str| text.parse().ok().filter(|number| (1..=max).contains(number));
+            item.parse(&format!("a whole number from 1 to {max}"), number)
         };
-        if matches!(name.as_str(), "--help" | "-h") {
-            return Ok(Command::Help);
-        }
-        let mut value = || parser.value().map_err(|error| error.to_string());
-        match name.as_str() {
-            "--out" => args.out = value()?.into(),
-            "--render" => args.render = value()?.into(),
-            "--jobs" => args.jobs = whole(&name, &text(value()?)?, 1024)? as usize,
-            "--seconds" => args.limit = Duration::from_secs(whole(&name, &text(value()?)?, 86400)?),
-            "--memory" => {
-                let size = text(value()?)?;
-                let bytes = program::bytes(&size).filter(|bytes| *bytes > 0);
-                args.memory_bytes = bytes.ok_or(format!("--memory {size}: give bytes, such as 2GiB or 500MB"))?;
+        match item.name() {
+            "DIR" => args.folder = item.raw().into(),
+            "out" => args.out = item.raw().into(),
+            "render" => args.render = item.raw().into(),
+            "jobs" => args.jobs = whole(1024)? as usize,
+            "seconds" => args.limit = Duration::from_secs(whole(86400)?),
+            "memory" => {
+                let bytes = |text: &str| program::bytes(text).filter(|bytes| *bytes > 0);
+                args.memory_bytes = item.parse("bytes, such as 2GiB or 500MB", bytes)?;
             }
-            "--size" => {
-                let size = text(value()?)?;
-                args.size_px = sides(&size).ok_or(format!("--size {size}: give WxH in pixels, 16 to 1024 each"))?;
-            }
-            _ => return Err(format!("unknown option `{name}`; see --help")),
+            _ => args.size_px = item.parse("WxH in pixels, 16 to 1024 each", sides)?,
         }
     }
-    args.folder = folder.ok_or("no folder is named; see --help")?;
     if args.render.as_os_str().is_empty() {
         let own = std::env::current_exe().map_err(|error| format!("the path of this program: {error}"))?;
         args.render = own.with_file_name(format!("render{}", std::env::consts::EXE_SUFFIX));
@@ -128,11 +131,6 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Command, S
 
 fn text(word: OsString) -> Result<String, String> {
     word.into_string().map_err(|word| format!("`{}` is not UTF-8", word.to_string_lossy()))
-}
-
-fn whole(name: &str, value: &str, max: u64) -> Result<u64, String> {
-    let number = value.parse().ok().filter(|number| (1..=max).contains(number));
-    number.ok_or_else(|| format!("{name} {value}: give a whole number from 1 to {max}"))
 }
 
 fn sides(size: &str) -> Option<[u32; 2]> {
@@ -164,15 +162,15 @@ mod tests {
             further: ["--msaa", "1", "--size"].map(str::to_owned).into(),
         };
         assert_eq!(args, expected);
-        assert_eq!(read("--help"), Ok(Command::Help));
+        assert!(matches!(read("--help"), Ok(Command::Help(_))));
     }
 
     #[test]
     fn wrong_options_are_named() {
         for (line, named) in [
             ("", "no folder"),
-            ("a b", "`b`"),
-            ("a --fast", "`--fast`"),
+            ("a b", "b: unexpected argument"),
+            ("a --fast", "--fast: unknown option"),
             ("a --jobs 0", "--jobs 0"),
             ("a --seconds x", "--seconds x"),
             ("a --memory much", "--memory much"),

@@ -84,7 +84,7 @@ pub fn run(args: &Args) -> Result<Outcome, String> {
     if let Some(error) = locked(&failure).take() {
         return Err(error);
     }
-    let (mut files, shown) = finished.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let (mut files, mut shown) = finished.into_inner().unwrap_or_else(PoisonError::into_inner);
     shown.clear();
     let rendered = files.len() - (found.len() - left.len());
     files.sort_by(|a, b| a.file.cmp(&b.file));

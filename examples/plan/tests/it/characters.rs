@@ -20,7 +20,7 @@ fn no_output_has_control_characters() {
         (&[&wrong], r"\u{1b}[31m wrong.ron:1:14: "),
         (&["\u{1b}[31m.ron"], r"\u{1b}[31m.ron: cannot be read"),
         (&[&empty, "--caps", "\u{1b}[31m"], r"invalid value `\u{1b}[31m`"),
-        (&["--\u{1b}[31m"], r"unknown option `--\u{1b}[31m`"),
+        (&["--\u{1b}[31m"], r"--\u{1b}[31m: unknown option"),
         (&["--offsets", &table], r"a\u{1b}[31m,1,2,4,0"),
     ];
     for (args, shown) in cases {

@@ -1,15 +1,22 @@
 //! Options of the animation and its time.
 
 use framegraph_scene::Scene;
-use lexopt::Parser;
+use program::clap::Arg;
+use program::cli::{Item, option};
 
-/// Help section.
-pub const HELP: &str = "\
-ANIMATION
-  --time S             time of the animation in seconds; it repeats. Animates nodes, skins, morph targets, lights and
-                       cameras on nodes, and the targets of KHR_animation_pointer
-  --animation NAME     animation by name or index (0)
-";
+/// Declares the options of this module.
+pub fn options() -> Vec<Arg> {
+    let all = vec![
+        option(
+            "time",
+            "S",
+            "Time of the animation in seconds; it repeats. Animates nodes, skins, morph targets, lights and cameras \
+             on nodes, and the targets of KHR_animation_pointer",
+        ),
+        option("animation", "NAME", "Animation by name or index (0)"),
+    ];
+    all.into_iter().map(|option| option.help_heading("Animation")).collect()
+}
 
 /// Animation and its time.
 #[derive(Clone, Debug, Default)]
@@ -24,18 +31,13 @@ impl AnimationTime {
     ///
     /// # Errors
     /// One line that names the option and the expected value.
-    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
-        let mut value = || {
-            let value = parser.value().map_err(|_| format!("--{name}: missing value"))?;
-            value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"))
-        };
-        match name {
+    pub fn take(&mut self, item: &Item) -> Result<bool, String> {
+        match item.name() {
             "time" => {
-                let text = value()?;
-                let seconds = text.parse().ok().filter(|seconds| (0.0..=1e9).contains(seconds));
-                self.time_s = Some(seconds.ok_or_else(|| format!("--time {text}: expected seconds from 0 to 1e9"))?);
+                let seconds = |text: &str| text.parse().ok().filter(|seconds| (0.0..=1e9).contains(seconds));
+                self.time_s = Some(item.parse("seconds from 0 to 1e9", seconds)?);
             }
-            "animation" => self.animation = Some(value()?),
+            "animation" => self.animation = Some(item.text()?),
             _ => return Ok(false),
         }
         Ok(true)

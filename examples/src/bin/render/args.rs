@@ -7,15 +7,17 @@ use crate::decide::{self, Decide};
 use crate::effects::Effects;
 use crate::explicit::ExplicitOptions;
 use crate::grade::Grade;
+use crate::help;
 use crate::light::Lighting;
 use crate::name::{plan_files, with_ending};
-use crate::parse::{number, precision, quality, shading, switch};
+use crate::parse::{field, fields, precision, quality, switch};
 use crate::shadows::Shadows;
 use crate::values::{alias, camera, frames, memory, samples, size, threads};
 use framegraph::Alias;
 use framegraph_passes::PostSettings;
 use framegraph_passes::{Effect, Precision, Quality, Settings, Shading};
 use framegraph_scene::{BlockFormats, CameraChoice, LoadOptions, Memory};
+use program::cli::Parsed;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -110,8 +112,8 @@ impl Args {
 /// Parsed command line.
 #[derive(Clone, Debug)]
 pub enum Command {
-    /// Print the help.
-    Help,
+    /// Print the help, or the keys of an option.
+    Help(String),
     /// Render.
     Render(Box<Args>),
 }
@@ -121,12 +123,13 @@ pub enum Command {
 /// # Errors
 /// One line that names the option and the expected value.
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
-    use lexopt::prelude::*;
-    let args: Vec<OsString> = args.into_iter().collect();
-    let (frame, settings) = decide::base(&args)?;
+    let given = match program::cli::parse(help::command(), args)? {
+        Parsed::Help(text) => return Ok(Command::Help(text)),
+        Parsed::Given(given) => given,
+    };
+    let (frame, settings) = decide::base(&given)?;
     let base = frame.map_or(Settings::default(), |frame| frame.settings);
-    let mut explicit = ExplicitOptions::of(&args);
-    let mut parser = lexopt::Parser::from_args(args);
+    let explicit = ExplicitOptions::of(&given);
     let mut found = Args {
         scene: String::new(),
         size_px: [1280, 720],
@@ -169,62 +172,49 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     let mut plan: Option<PathBuf> = None;
     let mut shade = String::new();
     let mut numbers: Option<Precision> = None;
-    while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
-        if let Long(name) = arg {
-            explicit.note(name)?;
+    for item in given {
+        if item.raw() == "help"
+            && let Some(keys) = help::keys(item.name())
+        {
+            return Ok(Command::Help(keys));
         }
-        match arg {
-            Long("help") | Short('h') => return Ok(Command::Help),
-            Long("size") => found.size_px = size(&text(&mut parser, "--size")?)?,
-            Long("msaa") => found.samples = samples(&text(&mut parser, "--msaa")?)?,
-            Long("camera") => found.camera = Some(camera(&text(&mut parser, "--camera")?)?),
-            Long("camera-from-gltf") => found.camera_from_gltf = true,
-            Long("quality") => found.quality = quality(&text(&mut parser, "--quality")?)?,
-            Long("shade") => shade = text(&mut parser, "--shade")?,
-            Long("precision") => numbers = Some(precision(&text(&mut parser, "--precision")?)?),
-            Long("compensation") => {
-                let stops = text(&mut parser, "--compensation")?;
-                found.post.compensation_ev = number("--compensation", &stops, -16.0..=16.0)?;
-            }
-            Long("vignette") => {
-                found.post.vignette_ev = number("--vignette", &text(&mut parser, "--vignette")?, 0.0..=16.0)?;
-            }
-            Long("dither") => found.post.dither = number("--dither", &text(&mut parser, "--dither")?, 0.0..=1.0)?,
-            Long("alias") => found.alias = alias(&text(&mut parser, "--alias")?)?,
-            Long("threads") => found.threads = threads(&text(&mut parser, "--threads")?)?,
-            Long("inline") => found.inline = switch("--inline", &text(&mut parser, "--inline")?)?,
-            Long("round-hdr") => found.round_hdr = true,
-            Long("split-post") => found.split_post = true,
-            Long("compare-post") => found.compare_post = true,
-            Long("no-fxaa") => found.fxaa = false,
-            Long("frames") => found.frames = frames(&text(&mut parser, "--frames")?)?,
-            Long("out") => found.out = with_ending(path(&mut parser, "--out")?, "--out", &["png"])?,
-            Long("linear-out") => {
-                found.linear_out = Some(with_ending(path(&mut parser, "--linear-out")?, "--linear-out", &["exr"])?);
-            }
-            Long("memory") => found.memory_bytes = Some(memory(&text(&mut parser, "--memory")?)?),
-            Long("variant") => found.variant = Some(text(&mut parser, "--variant")?),
-            Long("allow-outside") => found.allow_outside = true,
-            Long("plan") => plan = Some(path(&mut parser, "--plan")?),
-            Value(value) if found.scene.is_empty() => {
-                found.scene = value.into_string().map_err(|v| format!("SCENE {v:?}: the name is not Unicode"))?;
-            }
-            Value(value) => return Err(format!("{value:?}: unexpected argument; SCENE is already `{}`", found.scene)),
-            Long(name) => {
-                let name = name.to_owned();
-                let taken = found.lighting.take(&name, &mut parser)?
-                    || found.shadows.take(&name, &mut parser)?
-                    || found.effects.take(&name, &mut parser)?
-                    || found.animation.take(&name, &mut parser)?
-                    || found.grade.take(&name, &mut parser)?
-                    || found.decide.take(&name, &mut parser)?
-                    || found.budget.take(&name, &mut parser)?
-                    || found.debug.take(&name, &mut parser)?;
+        match item.name() {
+            "SCENE" => found.scene = item.text()?,
+            "size" => found.size_px = size(&item)?,
+            "msaa" => found.samples = samples(&item)?,
+            "camera" => found.camera = Some(camera(&item.text()?)?),
+            "camera-from-gltf" => found.camera_from_gltf = true,
+            "quality" => found.quality = quality(&item)?,
+            "shade" => shade = item.text()?,
+            "precision" => numbers = Some(precision(&item)?),
+            "compensation" | "vignette" | "dither" => field(&item, &mut found.post)?,
+            "alias" => found.alias = alias(&item)?,
+            "threads" => found.threads = threads(&item)?,
+            "inline" => found.inline = switch(&item)?,
+            "round-hdr" => found.round_hdr = true,
+            "split-post" => found.split_post = true,
+            "compare-post" => found.compare_post = true,
+            "no-fxaa" => found.fxaa = false,
+            "frames" => found.frames = frames(&item)?,
+            "out" => found.out = with_ending(item.raw().into(), "--out", &["png"])?,
+            "linear-out" => found.linear_out = Some(with_ending(item.raw().into(), "--linear-out", &["exr"])?),
+            "memory" => found.memory_bytes = Some(memory(&item)?),
+            "variant" => found.variant = Some(item.text()?),
+            "allow-outside" => found.allow_outside = true,
+            "plan" => plan = Some(item.raw().into()),
+            name => {
+                let taken = found.lighting.take(&item)?
+                    || found.shadows.take(&item)?
+                    || found.effects.take(&item)?
+                    || found.animation.take(&item)?
+                    || found.grade.take(&item)?
+                    || found.decide.take(&item)?
+                    || found.budget.take(&item)?
+                    || found.debug.take(&item)?;
                 if !taken {
-                    return Err(format!("--{name}: unknown option; `render --help` lists them"));
+                    return Err(format!("internal error: no module has --{name}"));
                 }
             }
-            Short(name) => return Err(format!("-{name}: unknown option; `render --help` lists them")),
         }
     }
     if found.scene.is_empty() {
@@ -240,7 +230,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     found.keep_linear()?;
     found.grade.apply(&mut found.post)?;
     let chosen = if explicit.has("quality") { found.quality.shading() } else { found.shading };
-    found.shading = shading(chosen, &shade)?;
+    found.shading = chosen;
+    fields("shade", &shade, &mut found.shading)?;
     found.shading.precision = numbers.unwrap_or(found.shading.precision);
     if found.compare_post && !explicit.has("size") {
         found.size_px = [1920, 1080];
@@ -267,15 +258,6 @@ impl Args {
     }
 }
 
-fn text(parser: &mut lexopt::Parser, option: &str) -> Result<String, String> {
-    let value = parser.value().map_err(|_| format!("{option}: missing value"))?;
-    value.into_string().map_err(|v| format!("{option} {v:?}: the value is not Unicode"))
-}
-
-fn path(parser: &mut lexopt::Parser, option: &str) -> Result<PathBuf, String> {
-    parser.value().map(PathBuf::from).map_err(|_| format!("{option}: missing file"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -283,7 +265,7 @@ mod tests {
     fn args(words: &[&str]) -> Result<Args, String> {
         match parse(words.iter().map(OsString::from))? {
             Command::Render(args) => Ok(*args),
-            Command::Help => Err("help".into()),
+            Command::Help(_) => Err("help".into()),
         }
     }
 
@@ -352,7 +334,7 @@ mod tests {
             (&["--precision", "f64"], "--precision f64"),
             (&["--shade", "gloss=1"], "--shade gloss"),
             (&["--shade", "bands=3,floor"], "--shade floor"),
-            (&["--vignette", "-1"], "--vignette -1"),
+            (&["--vignette", "-1"], "--vignette=-1"),
             (&["--grade", "hue=1"], "--grade hue"),
             (&["--ao", "ssao"], "--ao ssao"),
             (&["--ao", "sao:gloss=1"], "--ao gloss"),

@@ -8,24 +8,39 @@ use framegraph_passes::FrameSettings;
 use framegraph_passes::feature_culling::{Decision, Facts};
 use framegraph_passes::quality::{Bound, Choices, GROUPS, Measured, Offers, Settled, Trial, reference, settle};
 use framegraph_wgpu::read_texture;
-use lexopt::Parser;
+use program::clap::Arg;
+use program::cli::{Item, option};
 use program::input::{MAX_TEXT_BYTES, text};
 use program::outputs::Outputs;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Help section.
-pub const HELP: &str = "\
-BUDGET
-  --budget-ms X        choose the most accurate frame within X ms on this device. Candidates for edges, shadows, ambient
-                       occlusion, shading, precision, HDR format, reflections and glass come from measured costs and errors
-                       (docs/measurements/accuracy.md), and are verified on this scene against the reference frame
-  --max-error X        choose the fastest frame whose root-mean-square error against the reference frame is at most X 8-bit
-                       steps
-  --record FILE.json   measurements of `accuracy --technique budget`; default: docs/measurements/accuracy.json, measured with a software
-                       driver. With --preset, the options of the preset are chosen from it
-";
+/// Declares the options of this module.
+pub fn options() -> Vec<Arg> {
+    let all = vec![
+        option(
+            "budget-ms",
+            "X",
+            "Choose the most accurate frame within X ms on this device. Candidates for edges, shadows, ambient \
+             occlusion, shading, precision, HDR format, reflections and glass come from measured costs and errors \
+             (docs/measurements/accuracy.md), and are verified on this scene against the reference frame",
+        ),
+        option(
+            "max-error",
+            "X",
+            "Choose the fastest frame whose root-mean-square error against the reference frame is at most X 8-bit \
+             steps",
+        ),
+        option(
+            "record",
+            "FILE.json",
+            "Measurements of `accuracy --technique budget`; default: docs/measurements/accuracy.json, measured with \
+             a software driver. With --preset, the options of the preset are chosen from it",
+        ),
+    ];
+    all.into_iter().map(|option| option.help_heading("Budget")).collect()
+}
 
 /// Measurements committed to the repository.
 const OWN: &str = include_str!("../../../../docs/measurements/accuracy.json");
@@ -44,21 +59,16 @@ impl Budget {
     ///
     /// # Errors
     /// One line that names the option and the expected value.
-    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
-        let mut value = || parser.value().map_err(|_| format!("--{name}: missing value"));
-        match name {
-            "budget-ms" => self.bound = Some(Bound::Ms(positive(name, &value()?.to_string_lossy())?)),
-            "max-error" => self.bound = Some(Bound::Codes(positive(name, &value()?.to_string_lossy())?)),
-            "record" => self.record = Some(crate::name::with_ending(value()?.into(), "--record", &["json"])?),
+    pub fn take(&mut self, item: &Item) -> Result<bool, String> {
+        let positive = |text: &str| text.parse::<f64>().ok().filter(|x| *x > 0.0 && x.is_finite());
+        match item.name() {
+            "budget-ms" => self.bound = Some(Bound::Ms(item.parse("a number above 0", positive)?)),
+            "max-error" => self.bound = Some(Bound::Codes(item.parse("a number above 0", positive)?)),
+            "record" => self.record = Some(crate::name::with_ending(item.raw().into(), "--record", &["json"])?),
             _ => return Ok(false),
         }
         Ok(true)
     }
-}
-
-fn positive(name: &str, text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|x| *x > 0.0 && x.is_finite());
-    number.ok_or_else(|| format!("--{name} {text}: expected a number above 0"))
 }
 
 /// Fields of a record file that the search reads.

@@ -55,7 +55,8 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     };
     if asked.blended || asked.scene_levels > 0 {
         return Err(input(format!(
-            "--compare-post: the scene `{}` has blended or transmissive materials, so nothing is inlined; choose another scene",
+            "--compare-post: the scene `{}` has blended or transmissive materials, so nothing is inlined; choose \
+             another scene",
             args.scene
         )));
     }

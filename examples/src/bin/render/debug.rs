@@ -12,33 +12,55 @@ use framegraph_wgpu::inspect::{
     DisplayImage, DisplayMode, InspectTarget, Inspection, Inspector, Request, all_targets, find,
 };
 use framegraph_wgpu::{Executor, ExecutorOptions, ObjectCounts, Summary, read_texture};
-use lexopt::Parser;
+use program::clap::Arg;
+use program::cli::{Item, flag, option};
 use program::interrupt;
 use program::outputs::Outputs;
 use program::progress::Shown;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Help section.
-pub const HELP: &str = "\
-DEBUGGING
-  --inspect TEXTURE    write a texture of the frame: NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as hdr@color. Selects the
-                       newest version, the version that a pass wrote, a version by number, or the state after a step. A
-                       second plan is compiled for it; the plan of the frame is unchanged
-  --inspect-out FILE   .png to look at, .exr for exact values (inspect.png)
-  --inspect-mode MODE  auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], plain[:r|g|b|a] or
-                       false[:r|g|b|a][:LOW,HIGH]; NaN and infinity are magenta (auto)
-  --inspect-sample N   sample of a multisampled texture; default: the average, for depth the first
-  --inspect-all DIR    write every version of every texture as a picture
-  --trace FILE.json    times of every frame and step on CPU and GPU, for chrome://tracing or Perfetto
-  --timing             print minima, quartiles and medians, the share of wgpu, created and reused objects, memory, and the
-                       latency with one to three frames queued
-  --debug MODE,...     no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, without memoryless
-                       attachments), poison (fill uninitialized memory with NaN or magenta)
-  --pick X,Y[:X,Y...]  print the frontmost opaque object at pixels, counted from the left and the top, with its number, depth
-                       and position
-  --bisect             render under each debug mode and print the modes that change the picture
-";
+/// Declares the options of this module.
+pub fn options() -> Vec<Arg> {
+    let all = vec![
+        option(
+            "inspect",
+            "TEXTURE",
+            "Write a texture of the frame: NAME[@PASS|@vN|@sN][:MIP[:LAYER]], such as hdr@color. Selects the newest \
+             version, the version that a pass wrote, a version by number, or the state after a step. A second plan \
+             is compiled for it; the plan of the frame is unchanged",
+        ),
+        option("inspect-out", "FILE", ".png to look at, .exr for exact values (inspect.png)"),
+        option(
+            "inspect-mode",
+            "MODE",
+            "auto, color[:STOPS], depth[:NEAR_M], stretch[:r|g|b|a], plain[:r|g|b|a] or false[:r|g|b|a][:LOW,HIGH]; \
+             NaN and infinity are magenta (auto)",
+        ),
+        option("inspect-sample", "N", "Sample of a multisampled texture; default: the average, for depth the first"),
+        option("inspect-all", "DIR", "Write every version of every texture as a picture"),
+        option("trace", "FILE.json", "Times of every frame and step on CPU and GPU, for chrome://tracing or Perfetto"),
+        flag(
+            "timing",
+            "Print minima, quartiles and medians, the share of wgpu, created and reused objects, memory, and the \
+             latency with one to three frames queued",
+        ),
+        option(
+            "debug",
+            "MODE,...",
+            "no-cull, no-merge, no-inline, no-alias, immediate (all of these, in declared order, without memoryless \
+             attachments), poison (fill uninitialized memory with NaN or magenta)",
+        ),
+        option(
+            "pick",
+            "X,Y[:X,Y...]",
+            "Print the frontmost opaque object at pixels, counted from the left and the top, with its number, depth \
+             and position",
+        ),
+        flag("bisect", "Render under each debug mode and print the modes that change the picture"),
+    ];
+    all.into_iter().map(|option| option.help_heading("Debugging")).collect()
+}
 
 /// Options of inspection, tracing and debug modes.
 #[derive(Clone, Debug)]
@@ -79,28 +101,22 @@ impl Debugging {
     ///
     /// # Errors
     /// One line that names the option and the expected value.
-    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
-        let option = format!("--{name}");
-        let mut text = || {
-            let value = parser.value().map_err(|_| format!("{option}: missing value"))?;
-            value.into_string().map_err(|v| format!("{option} {v:?}: the value is not Unicode"))
-        };
+    pub fn take(&mut self, item: &Item) -> Result<bool, String> {
+        let option = format!("--{}", item.name());
         let failed = |error: &dyn std::fmt::Display| format!("{option}: {error}");
-        match name {
-            "inspect" => self.inspect = Some(text()?.parse().map_err(|e| failed(&e))?),
-            "inspect-out" => self.inspect_out = with_ending(text()?.into(), &option, &["png", "exr"])?,
-            "inspect-mode" => self.inspect_mode = text()?.parse().map_err(|e| failed(&e))?,
+        match item.name() {
+            "inspect" => self.inspect = Some(item.text()?.parse().map_err(|e| failed(&e))?),
+            "inspect-out" => self.inspect_out = with_ending(item.raw().into(), &option, &["png", "exr"])?,
+            "inspect-mode" => self.inspect_mode = item.text()?.parse().map_err(|e| failed(&e))?,
             "inspect-sample" => {
-                let number = text()?;
-                self.sample =
-                    Some(number.parse().map_err(|_| format!("{option} {number}: expected a number from 0 to 255"))?);
+                self.sample = Some(item.parse("a number from 0 to 255", |text| text.parse().ok())?);
             }
-            "inspect-all" => self.inspect_all = Some(PathBuf::from(text()?)),
-            "trace" => self.trace = Some(with_ending(text()?.into(), &option, &["json"])?),
+            "inspect-all" => self.inspect_all = Some(item.raw().into()),
+            "trace" => self.trace = Some(with_ending(item.raw().into(), &option, &["json"])?),
             "timing" => self.timing = true,
-            "debug" => self.modes = text()?.parse().map_err(|e| failed(&e))?,
+            "debug" => self.modes = item.text()?.parse().map_err(|e| failed(&e))?,
             "bisect" => self.bisect = true,
-            "pick" => self.picks = pick::pixels(&text()?)?,
+            "pick" => self.picks = pick::pixels(&item.text()?)?,
             _ => return Ok(false),
         }
         Ok(true)
@@ -332,18 +348,10 @@ pub fn run_bisect(args: &Args) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::ffi::OsString;
 
     fn taken(words: &[&str]) -> Result<Debugging, String> {
         let mut asked = Debugging::default();
-        let mut parser = Parser::from_args(words.iter().map(OsString::from));
-        while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
-            let lexopt::Arg::Long(name) = arg else { return Err("no option".into()) };
-            let name = name.to_owned();
-            if !asked.take(&name, &mut parser)? {
-                return Err(format!("--{name}: unknown"));
-            }
-        }
+        crate::parse::taken(options(), words, |item| asked.take(item))?;
         Ok(asked)
     }
 
@@ -368,7 +376,7 @@ mod tests {
             (&["--inspect-sample", "-1"], "--inspect-sample -1"),
             (&["--trace", "t.txt"], "--trace t.txt: the file must end in .json"),
             (&["--debug", "fast"], "--debug: `fast` is not a debug mode"),
-            (&["--inspect"], "--inspect: missing value"),
+            (&["--inspect"], "--inspect: missing TEXTURE"),
             (&["--no-such"], "--no-such: unknown"),
         ];
         for (words, named) in cases {

@@ -11,37 +11,70 @@ use framegraph_passes::gpu_scene::view::ViewSettings;
 use framegraph_passes::light::ibl::ImageLight;
 use framegraph_passes::{Effect, EffectSet, FactInput, FactMemory, Facts, FrameSettings, Preset, Settings};
 use framegraph_scene::Scene;
-use lexopt::Parser;
+use program::clap::{Arg, ArgAction};
+use program::cli::{Given, Item, flag, option};
 use program::input;
-use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-/// Help section.
-pub const HELP: &str = "\
-FRAME
-  --preset NAME        settings of the whole frame: low, medium, high or ultra (docs/reference/settings.md); other options override
-                       them. With --record, the preset's options are chosen from the record
-  --settings FILE.ron  settings of the whole frame from a file (docs/reference/settings.md); other options override them
-  --enable EFFECT      always draw the effect, at its default strength; repeatable
-  --disable EFFECT     never draw the effect; repeatable. EFFECT is NAMES
-  --force-effects      draw every requested effect. By default, effects that provably change nothing in this scene are
-                       dropped, and listed with their reasons after the table (docs/design/feature-culling.md)
-  --facts FILE.json    write the decision on each effect
-  --effect-costs       also print the cost of each effect: the frame with and without it, measured alternately, all other
-                       decisions unchanged. Times are medians of --frames, from recording to completion
-  --graph FILE.ron     write the graph of the frame, for the program `plan` (docs/reference/graph-format.md)
-  --what-if DEVICE     compare the plan's counts with those on another device: desktop, tiler, wgpu, or a FILE.ron that
-                       describes one (docs/reference/graph-format.md)
-  --turntable N DIR    write N pictures DIR/turntable_0000.png, … of one camera orbit around the scene instead of one picture
-  --sequence N DIR     write N consecutive frames DIR/frame_0000.png, … instead of one picture; with --time S an animation
-                       plays from there at 30 frames per second
-";
-
-/// Returns the help section with the names of all effects.
-pub fn help() -> String {
-    let names = Effect::ALL.map(Effect::name);
-    let lines: Vec<String> = names.chunks(7).map(|names| names.join(", ")).collect();
-    HELP.replace("NAMES", &format!("one of\n                       {}", lines.join(",\n                       ")))
+/// Declares the options of this module.
+pub fn options() -> Vec<Arg> {
+    let effects = Effect::ALL.map(Effect::name).join(", ");
+    let all = vec![
+        option(
+            "preset",
+            "NAME",
+            "Settings of the whole frame: low, medium, high or ultra (docs/reference/settings.md); other options \
+             override them. With --record, the preset's options are chosen from the record",
+        ),
+        option(
+            "settings",
+            "FILE.ron",
+            "Settings of the whole frame from a file (docs/reference/settings.md); other options override them",
+        ),
+        option("enable", "EFFECT", "Always draw the effect, at its default strength; repeatable")
+            .action(ArgAction::Append),
+        option("disable", "EFFECT", format!("Never draw the effect; repeatable. EFFECT is one of {effects}"))
+            .action(ArgAction::Append),
+        flag(
+            "force-effects",
+            "Draw every requested effect. By default, effects that provably change nothing in this scene are \
+             dropped, and listed with their reasons after the table (docs/design/feature-culling.md)",
+        ),
+        option("facts", "FILE.json", "Write the decision on each effect"),
+        flag(
+            "effect-costs",
+            "Also print the cost of each effect: the frame with and without it, measured alternately, all other \
+             decisions unchanged. Times are medians of --frames, from recording to completion",
+        )
+        .alias("what-it-costs"),
+        option(
+            "graph",
+            "FILE.ron",
+            "Write the graph of the frame, for the program `plan` (docs/reference/graph-format.md)",
+        ),
+        option(
+            "what-if",
+            "DEVICE",
+            "Compare the plan's counts with those on another device: desktop, tiler, wgpu, or a FILE.ron that \
+             describes one (docs/reference/graph-format.md)",
+        ),
+        option(
+            "turntable",
+            "N",
+            "Write N pictures DIR/turntable_0000.png, … of one camera orbit around the scene instead of one picture",
+        )
+        .num_args(2)
+        .value_names(["N", "DIR"]),
+        option(
+            "sequence",
+            "N",
+            "Write N consecutive frames DIR/frame_0000.png, … instead of one picture; with --time S an animation \
+             plays from there at 30 frames per second",
+        )
+        .num_args(2)
+        .value_names(["N", "DIR"]),
+    ];
+    all.into_iter().map(|option| option.help_heading("Frame")).collect()
 }
 
 /// Options of the whole frame.
@@ -83,31 +116,26 @@ impl Decide {
     ///
     /// # Errors
     /// One line that names the option and the expected value.
-    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
-        let mut raw = |what: &str| parser.value().map_err(|_| format!("--{name}: missing {what}"));
-        let text =
-            |value: OsString| value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"));
-        match name {
-            "enable" => self.enabled = self.enabled.with(effect(name, &text(raw("effect")?)?)?),
-            "disable" => self.disabled = self.disabled.with(effect(name, &text(raw("effect")?)?)?),
+    pub fn take(&mut self, item: &Item) -> Result<bool, String> {
+        match item.name() {
+            "enable" => self.enabled = self.enabled.with(effect(item)?),
+            "disable" => self.disabled = self.disabled.with(effect(item)?),
             "force-effects" => self.forced = true,
-            "effect-costs" | "what-it-costs" => self.effect_costs = true,
-            "facts" => self.json = Some(crate::name::with_ending(raw("file")?.into(), "--facts", &["json"])?),
-            "graph" => self.graph = Some(crate::name::with_ending(raw("file")?.into(), "--graph", &["ron"])?),
-            "what-if" => self.what_if = Some(text(raw("device")?)?),
-            "turntable" | "sequence" => {
-                let count = text(raw("number of pictures")?)?;
-                let wrong = || format!("--{name} {count}: expected a number of pictures from 1 to 9999");
-                let frames = count.parse().ok().filter(|n| (1..=9999).contains(n)).ok_or_else(wrong)?;
+            "effect-costs" => self.effect_costs = true,
+            "facts" => self.json = Some(crate::name::with_ending(item.raw().into(), "--facts", &["json"])?),
+            "graph" => self.graph = Some(crate::name::with_ending(item.raw().into(), "--graph", &["ron"])?),
+            "what-if" => self.what_if = Some(item.text()?),
+            name @ ("turntable" | "sequence") => {
+                let count = |text: &str| text.parse().ok().filter(|n| (1..=9999).contains(n));
                 self.sequence = Some(Sequence {
                     turns: name == "turntable",
-                    frames,
-                    folder: raw("folder")?.into(),
+                    frames: item.parse("a number of pictures from 1 to 9999", count)?,
+                    folder: item.second().into(),
                     per_second: 30.0,
                 });
             }
-            // `base` has parsed them before all other options.
-            "preset" | "settings" => _ = raw("value")?,
+            // `base` has read them before all other options.
+            "preset" | "settings" => {}
             _ => return Ok(false),
         }
         if let Some(both) = self.enabled.and(self.disabled).iter().next() {
@@ -123,17 +151,17 @@ impl Decide {
     }
 }
 
-fn effect(option: &str, name: &str) -> Result<Effect, String> {
-    let known = || Effect::ALL.map(Effect::name).join(", ");
-    Effect::from_name(name).ok_or_else(|| format!("--{option} {name}: unknown effect; expected one of {}", known()))
+fn effect(item: &Item) -> Result<Effect, String> {
+    item.parse(&format!("one of {}", Effect::ALL.map(Effect::name).join(", ")), Effect::from_name)
 }
 
 /// Returns the base settings from `--preset` or `--settings`, and the settings file.
 ///
 /// # Errors
 /// One line that names the option, and the place in the file.
-pub fn base(args: &[OsString]) -> Result<(Option<FrameSettings>, Option<PathBuf>), String> {
-    let (preset, file) = (value(args, "--preset"), value(args, "--settings"));
+pub fn base(given: &Given) -> Result<(Option<FrameSettings>, Option<PathBuf>), String> {
+    let value = |name| given.values(name).next();
+    let (preset, file) = (value("preset"), value("settings"));
     match (preset, file) {
         (Some(_), Some(_)) => Err("--settings: cannot be used with --preset; both set the whole frame".into()),
         (None, None) => Ok((None, None)),
@@ -142,26 +170,19 @@ pub fn base(args: &[OsString]) -> Result<(Option<FrameSettings>, Option<PathBuf>
             let known = || Preset::ALL.map(Preset::name).join(", ");
             let unknown = || format!("--preset {name}: unknown preset; expected one of {}", known());
             let preset = Preset::from_name(&name).ok_or_else(unknown)?;
-            let Some(record) = value(args, "--record") else { return Ok((Some(preset.frame()), None)) };
-            let (measured, _) = crate::budget::record(Some(Path::new(&record)))?;
+            let Some(record) = value("record") else { return Ok((Some(preset.frame()), None)) };
+            let (measured, _) = crate::budget::record(Some(Path::new(record)))?;
             let frame = preset.measured(&measured, |_| true).map_err(|error| format!("--record: {error}"))?;
             Ok((Some(frame), None))
         }
         (None, Some(path)) => {
             let shown = path.to_string_lossy();
             let text =
-                input::text(Path::new(&path), input::MAX_TEXT_BYTES).map_err(|error| format!("--settings {error}"))?;
+                input::text(Path::new(path), input::MAX_TEXT_BYTES).map_err(|error| format!("--settings {error}"))?;
             let frame = FrameSettings::from_ron(&shown, &text).map_err(|error| format!("--settings {error}"))?;
             Ok((Some(frame), Some(path.into())))
         }
     }
-}
-
-/// Returns the value of `--option value` or `--option=value`. A missing value is reported by the parser later.
-fn value(args: &[OsString], option: &str) -> Option<OsString> {
-    let own = |arg: &OsStr| arg.to_str()?.strip_prefix(option)?.strip_prefix('=').map(OsString::from);
-    let after = args.iter().position(|arg| arg == option).and_then(|at| args.get(at + 1)).cloned();
-    args.iter().find_map(|arg| own(arg)).or(after)
 }
 
 impl Args {
@@ -261,15 +282,19 @@ impl FeatureCulling {
 mod tests {
     use super::*;
 
-    fn words(line: &str) -> Vec<OsString> {
-        line.split(' ').map(OsString::from).collect()
+    fn base(line: &str) -> Result<(Option<FrameSettings>, Option<PathBuf>), String> {
+        let command = program::cli::command("render", "", "").args(options()).args(crate::budget::options());
+        match program::cli::parse(command, line.split(' ').map(std::ffi::OsString::from))? {
+            program::cli::Parsed::Given(given) => super::base(&given),
+            program::cli::Parsed::Help(text) => Err(text),
+        }
     }
 
     #[test]
     fn the_frame_begins_with_a_preset_or_a_file() {
-        assert_eq!(base(&words("--msaa 1")), Ok((None, None)));
-        for line in ["--preset ultra --msaa 1", "spheres --preset=ultra"] {
-            assert_eq!(base(&words(line)), Ok((Some(Preset::Ultra.frame()), None)));
+        assert_eq!(base("--force-effects"), Ok((None, None)));
+        for line in ["--preset ultra --force-effects", "--preset=ultra"] {
+            assert_eq!(base(line), Ok((Some(Preset::Ultra.frame()), None)));
         }
         for (line, named) in [
             ("--preset best", "--preset best: unknown preset; expected one of low, medium, high, ultra"),
@@ -277,7 +302,7 @@ mod tests {
             ("--preset low --settings a.ron", "--settings: cannot be used with --preset"),
             ("--settings no/such.ron", "--settings no/such.ron: "),
         ] {
-            let error = base(&words(line)).expect_err("the command line is invalid");
+            let error = base(line).expect_err("the command line is invalid");
             assert!(error.starts_with(named), "{error}");
         }
     }

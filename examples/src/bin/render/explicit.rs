@@ -3,14 +3,13 @@
 use crate::args::Args;
 use crate::light::{EnvironmentSource, Sun};
 use framegraph_passes::Effect;
-use std::ffi::OsString;
+use program::cli::{Given, Item};
 
-/// Names of the explicit options, in the order of the command line.
+/// Explicit options with their values, in the order of the command line.
 #[derive(Debug, Default)]
 pub struct ExplicitOptions {
-    names: Vec<String>,
-    /// Name and value of every option. The value is the next word, even if the option takes none.
-    values: Vec<(String, String)>,
+    /// Name and value of every option.
+    all: Vec<(String, String)>,
 }
 
 /// Options that write or show something of a single frame.
@@ -35,9 +34,6 @@ const SEARCHED: [&str; 12] = [
 
 /// Options that render several frames.
 const SEVERAL_FRAMES: [&str; 4] = ["compare-post", "bisect", "turntable", "sequence"];
-
-/// Repeatable options.
-const REPEATED: [&str; 2] = ["enable", "disable"];
 
 /// Options that write or print something of the plan.
 const PLAN_OUTPUTS: [&str; 3] = ["facts", "graph", "what-if"];
@@ -135,47 +131,27 @@ const REQUIRES: [(&str, &[&str]); 8] = [
     ("inspect-mode", &["inspect", "inspect-all"]),
 ];
 
-/// Former names of options and effects, which remain valid, with their current names.
-const FORMER: [(&str, &str); 2] = [("what-it-costs", "effect-costs"), ("lamp-shadows", "punctual-shadows")];
-
-/// Returns the current name of an option or an effect.
-fn current(name: &str) -> &str {
-    FORMER.iter().find(|(former, _)| *former == name).map_or(name, |(_, current)| current)
-}
-
 impl ExplicitOptions {
-    /// Reads the values from the command line, without any noted option.
-    pub fn of(words: &[OsString]) -> Self {
-        let mut values = Vec::new();
-        let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
-        for (index, word) in words.iter().enumerate() {
-            let Some(option) = word.strip_prefix("--") else { continue };
-            let next = words.get(index + 1).map_or("", AsRef::as_ref);
-            let (name, value) = option.split_once('=').unwrap_or((option, next));
-            let (name, value) = (current(name), current(value));
-            values.push((name.to_owned(), value.to_owned()));
-        }
-        Self { names: Vec::new(), values }
-    }
-
-    /// Notes an option.
-    ///
-    /// # Errors
-    /// The option was noted before and is not repeatable.
-    pub fn note(&mut self, name: &str) -> Result<(), String> {
-        let name = current(name);
-        if self.has(name) && !REPEATED.contains(&name) {
-            return Err(format!("--{name}: specified twice; remove one"));
-        }
-        self.names.push(name.to_owned());
-        Ok(())
+    /// Reads the options and their values.
+    pub fn of(given: &Given) -> Self {
+        let value = |item: &Item| {
+            let text = item.raw().to_string_lossy().into_owned();
+            // Former names of effects are accepted.
+            if matches!(item.name(), "enable" | "disable") {
+                return Effect::from_name(&text).map_or(text, |effect| effect.name().to_owned());
+            }
+            text
+        };
+        Self { all: given.clone().into_iter().map(|item| (item.name().to_owned(), value(&item))).collect() }
     }
 
     /// Returns whether an option is present; `"name value"` also requires the value.
     pub fn has(&self, asked: &str) -> bool {
-        let Some((option, value)) = asked.split_once(' ') else { return self.names.iter().any(|name| name == asked) };
+        let Some((option, value)) = asked.split_once(' ') else {
+            return self.all.iter().any(|(name, _)| name == asked);
+        };
         let is_it = |part: &str| part == value || part.split(':').next() == Some(value);
-        self.values.iter().any(|(name, values)| name == option && values.split(',').any(is_it))
+        self.all.iter().any(|(name, values)| name == option && values.split(',').any(is_it))
     }
 
     /// Rejects conflicting options.

@@ -4,35 +4,64 @@ use framegraph_passes::LightSearch;
 use framegraph_scene::SunHalo;
 use framegraph_scene::camera::{EV100_RANGE, ev100_from_settings};
 use glam::DVec3;
-use lexopt::Parser;
+use program::clap::Arg;
+use program::cli::{Item, option};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Help section.
-pub const HELP: &str = "\
-LIGHTING
-  --environment FILE   environment light from an equirectangular .hdr or .exr picture, or a cube map in .ktx or .ktx2;
-                       or uniform:R,G,B for constant radiance in nits, linear Rec.709; default: a clear sky with its sun.
-                       A sun in the picture is extracted into a directional light that casts shadows. A prefiltered cube
-                       map with irradiance (NAME_ibl.ktx of Filament's cmgen) is used as it is
-  --ibl-intensity X    factor on the environment light and on the visible environment or sky; metering ignores it (1)
-  --sun X,Y,Z:LUX[:ANGLE]  replace the sun by a white one: X,Y,Z is the direction toward it, of any length, LUX the
-                       illuminance on a surface that faces it, ANGLE the diameter of its disc in degrees (0.533). A clear
-                       sky follows a sun above the horizon
-  --sun-disk on|off|SIZE:FALLOFF  draw the sun's disk and halo behind the scene, as Filament's skybox with showSun. SIZE is the
-                       halo's radius relative to the disk, FALLOFF its exponent (10:80); default: as the scene's lights state
-  --sun off            remove the sun of the environment and all directional lights of the scene
-  --sun in-map         keep a sun in the environment picture as bright texels
-  --background COLOR   visible background; the environment still lights the scene. R,G,B is constant radiance in nits,
-                       linear Rec.709, exposed like the scene and not reflected; sky is the clear sky
-  --ev100 X            exposure value at ISO 100; default: metered from the light
-  --exposure X         exposure value as --ev100, or camera settings APERTURE,SHUTTER,ISO: f-number, seconds (also 1/125),
-                       ISO; 16,1/125,100 is EV 15
-  --lights METHOD      how shading finds punctual lights: froxels (clustered light lists), all (loop over every light; same
-                       picture), or auto (froxels for 4 or more lights of limited range; default). auto and froxels accept
-                       :KEY=X,...: tiles=N (maximum number of screen tiles, 144), slices=N (of depth, 16), near=M and far=M
-                       (far ends of the first and of the last slice; 5 and 100)
-";
+/// Declares the options of this module.
+pub fn options() -> Vec<Arg> {
+    let all = vec![
+        option(
+            "environment",
+            "FILE",
+            "Environment light from an equirectangular .hdr or .exr picture, or a cube map in .ktx or .ktx2; or \
+             uniform:R,G,B for constant radiance in nits, linear Rec.709; default: a clear sky with its sun. A sun \
+             in the picture is extracted into a directional light that casts shadows. A prefiltered cube map with \
+             irradiance (NAME_ibl.ktx of Filament's cmgen) is used as it is",
+        ),
+        option(
+            "ibl-intensity",
+            "X",
+            "Factor on the environment light and on the visible environment or sky; metering ignores it (1)",
+        ),
+        option(
+            "sun",
+            "X,Y,Z:LUX[:ANGLE]",
+            "Replace the sun by a white one: X,Y,Z is the direction toward it, of any length, LUX the illuminance \
+             on a surface that faces it, ANGLE the diameter of its disc in degrees (0.533). A clear sky follows a \
+             sun above the horizon. `off` removes the sun of the environment and all directional lights of the \
+             scene; `in-map` keeps a sun in the environment picture as bright texels",
+        ),
+        option(
+            "sun-disk",
+            "on|off|SIZE:FALLOFF",
+            "Draw the sun's disk and halo behind the scene, as Filament's skybox with showSun. SIZE is the halo's \
+             radius relative to the disk, FALLOFF its exponent (10:80); default: as the scene's lights state",
+        ),
+        option(
+            "background",
+            "COLOR",
+            "Visible background; the environment still lights the scene. R,G,B is constant radiance in nits, linear \
+             Rec.709, exposed like the scene and not reflected; sky is the clear sky",
+        ),
+        option("ev100", "X", "Exposure value at ISO 100; default: metered from the light"),
+        option(
+            "exposure",
+            "X",
+            "Exposure value as --ev100, or camera settings APERTURE,SHUTTER,ISO: f-number, seconds (also 1/125), \
+             ISO; 16,1/125,100 is EV 15",
+        ),
+        option(
+            "lights",
+            "METHOD[:KEY=X,...]",
+            "How shading finds punctual lights: froxels (clustered light lists), all (loop over every light; same \
+             picture), or auto (froxels for 4 or more lights of limited range; default). `--lights help` lists the \
+             keys",
+        ),
+    ];
+    all.into_iter().map(|option| option.help_heading("Lighting")).collect()
+}
 
 /// Apparent diameter of the sun seen from Earth, in degrees.
 const SOLAR_DIAMETER_DEG: f64 = 0.533;
@@ -139,30 +168,22 @@ impl Lighting {
     ///
     /// # Errors
     /// One line that names the option and the expected value.
-    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
-        let option = format!("--{name}");
-        let raw = |parser: &mut Parser, what: &str| parser.value().map_err(|_| format!("{option}: missing {what}"));
-        let text = |parser: &mut Parser| {
-            let value = raw(parser, "value")?;
-            value.into_string().map_err(|v| format!("{option} {v:?}: the value is not Unicode"))
-        };
-        match name {
-            "environment" => self.environment = environment(raw(parser, "file")?)?,
-            "ibl-intensity" => {
-                self.intensity = crate::parse::number(&option, &text(parser)?, 0.0..=1e6)?;
-            }
-            "sun" => self.sun = sun(&text(parser)?)?,
-            "sun-disk" => self.disk = disk(&text(parser)?)?,
+    pub fn take(&mut self, item: &Item) -> Result<bool, String> {
+        match item.name() {
+            "environment" => self.environment = environment(item.raw())?,
+            "ibl-intensity" => self.intensity = crate::parse::number(item, 0.0..=1e6)?,
+            "sun" => self.sun = sun(&item.text()?)?,
+            "sun-disk" => self.disk = disk(&item.text()?)?,
             "lights" => {
-                self.lights = LightSearch::from_text(&text(parser)?).map_err(|error| format!("{option} {error}"))?;
+                self.lights = LightSearch::parse(&item.text()?).map_err(|error| format!("--lights {error}"))?;
             }
-            "background" => self.background = background(&text(parser)?)?,
-            "ev100" | "exposure" => {
+            "background" => self.background = background(&item.text()?)?,
+            name @ ("ev100" | "exposure") => {
                 if self.ev100.is_some() {
-                    return Err(format!("{option}: the exposure is already set; use --ev100 or --exposure, once"));
+                    return Err(format!("--{name}: the exposure is already set; use --ev100 or --exposure, once"));
                 }
-                let value = text(parser)?;
-                self.ev100 = Some(if name == "exposure" { exposure(&value)? } else { ev100(&option, &value)? });
+                let value = item.text()?;
+                self.ev100 = Some(if name == "exposure" { exposure(&value)? } else { ev100("--ev100", &value)? });
             }
             _ => return Ok(false),
         }
@@ -289,12 +310,7 @@ mod tests {
 
     fn taken(words: &[&str]) -> Result<Lighting, String> {
         let mut asked = Lighting::default();
-        let mut parser = Parser::from_args(words.iter().map(OsString::from));
-        while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
-            let lexopt::Arg::Long(name) = arg else { return Err("no option".into()) };
-            let name = name.to_owned();
-            assert!(asked.take(&name, &mut parser)?, "--{name}: unknown");
-        }
+        crate::parse::taken(options(), words, |item| asked.take(item))?;
         Ok(asked)
     }
 
@@ -351,7 +367,7 @@ mod tests {
     #[test]
     fn invalid_options_are_reported() {
         let cases: [(&[&str], &str); 24] = [
-            (&["--environment"], "--environment: missing file"),
+            (&["--environment"], "--environment: missing FILE"),
             (&["--environment", "uniform:1,2"], "--environment uniform 1,2"),
             (&["--environment", "uniform:1,2,-3"], "--environment uniform 1,2,-3"),
             (&["--environment", "uniform:1,2,inf"], "--environment uniform 1,2,inf"),
@@ -363,9 +379,9 @@ mod tests {
             (&["--sun", "0,1,0:-1"], "--sun 0,1,0:-1: LUX"),
             (&["--sun", "0,1,0:1:99"], "--sun 0,1,0:1:99: ANGLE"),
             (&["--sun", "0,1,0:1:1:1"], "--sun 0,1,0:1:1:1"),
-            (&["--sun"], "--sun: missing value"),
+            (&["--sun"], "--sun: missing X,Y,Z:LUX"),
             (&["--lights", "some"], "--lights some: "),
-            (&["--lights", "froxels:far=1"], "--lights near=5: less than `far`"),
+            (&["--lights", "froxels:far=1"], "--lights near=5: expected less than `far`"),
             (&["--background", "blue"], "--background blue"),
             (&["--background", "1,2,3,4"], "--background 1,2,3,4"),
             (&["--exposure", "16,1/0,100"], "--exposure 16,1/0,100"),

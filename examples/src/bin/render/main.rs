@@ -34,8 +34,8 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let args = match args::parse(std::env::args_os().skip(1)) {
         Ok(Command::Render(args)) => args,
-        Ok(Command::Help) => {
-            program::line(help::help());
+        Ok(Command::Help(text)) => {
+            program::line(text.trim_end());
             return program::exit(0);
         }
         Err(message) => return fail(2, &message),

@@ -1,90 +1,74 @@
 //! Parsing of option values.
 
-use framegraph_passes::{Precision, Quality, Shading};
+use framegraph_passes::{Precision, Quality, SettingsTable};
+use program::cli::Item;
 use std::ops::RangeInclusive;
 
 /// Parses a number within a range.
 ///
 /// # Errors
 /// One line that names the option and the range.
-pub fn number(option: &str, text: &str, range: RangeInclusive<f32>) -> Result<f32, String> {
-    let value: f32 = text.parse().map_err(|_| format!("{option} {text}: expected a number"))?;
-    if range.contains(&value) {
-        Ok(value)
-    } else {
-        Err(format!("{option} {text}: out of range; expected {} to {}", range.start(), range.end()))
-    }
+pub fn number(item: &Item, range: RangeInclusive<f32>) -> Result<f32, String> {
+    let expected = format!("a number from {} to {}", range.start(), range.end());
+    item.parse(&expected, |text| text.parse().ok().filter(|value| range.contains(value)))
 }
 
-/// Splits `KEY=X,KEY=X` into keys and values, in order.
+/// Sets the field of settings that is named like the option.
 ///
 /// # Errors
-/// One line that names the option if a key has no value.
-pub fn pairs<'a>(option: &str, text: &'a str) -> Result<Vec<(&'a str, &'a str)>, String> {
-    let pair = |pair: &'a str| pair.split_once('=').ok_or_else(|| format!("{option} {pair}: expected KEY=X"));
-    text.split(',').filter(|text| !text.is_empty()).map(pair).collect()
+/// One line that names the option and the accepted values.
+pub fn field(item: &Item, settings: &mut impl SettingsTable) -> Result<(), String> {
+    settings.set(item.name(), &item.text()?).map_err(|error| format!("--{error}"))
+}
+
+/// Changes settings by pairs of `KEY=X`.
+///
+/// # Errors
+/// One line that names the option, the key and the accepted values.
+pub fn fields(option: &str, text: &str, settings: &mut impl SettingsTable) -> Result<(), String> {
+    settings.set_all(text).map_err(|error| format!("--{option} {error}"))
 }
 
 /// Parses `on` or `off`.
 ///
 /// # Errors
 /// One line that names the option.
-pub fn switch(option: &str, text: &str) -> Result<bool, String> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(format!("{option} {text}: expected `on` or `off`")),
-    }
+pub fn switch(item: &Item) -> Result<bool, String> {
+    item.parse("`on` or `off`", |text| match text {
+        "on" => Some(true),
+        "off" => Some(false),
+        _ => None,
+    })
 }
 
 /// Parses a shading quality.
 ///
 /// # Errors
 /// One line that lists the qualities.
-pub fn quality(text: &str) -> Result<Quality, String> {
-    let names = || Quality::ALL.map(Quality::name).join(", ");
-    Quality::from_name(text).ok_or_else(|| format!("--quality {text}: unknown quality; expected one of {}", names()))
+pub fn quality(item: &Item) -> Result<Quality, String> {
+    item.parse(&format!("one of {}", Quality::ALL.map(Quality::name).join(", ")), Quality::from_name)
 }
 
 /// Parses a shading precision.
 ///
 /// # Errors
 /// One line that lists the precisions.
-pub fn precision(text: &str) -> Result<Precision, String> {
-    let names = || Precision::ALL.map(Precision::name).join(", ");
-    Precision::from_name(text)
-        .ok_or_else(|| format!("--precision {text}: unknown precision; expected one of {}", names()))
+pub fn precision(item: &Item) -> Result<Precision, String> {
+    item.parse(&format!("one of {}", Precision::ALL.map(Precision::name).join(", ")), Precision::from_name)
 }
 
-/// Applies options such as `aa=on,bands=5` to `shading`.
-///
-/// # Errors
-/// One line that names the key.
-pub fn shading(mut shading: Shading, text: &str) -> Result<Shading, String> {
-    for (key, value) in pairs("--shade", text)? {
-        shading.set(key, value).map_err(|error| format!("--shade {error}"))?;
-    }
-    Ok(shading)
-}
-
+/// Parses `words` with these options only, and passes each on.
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shading_is_the_quality_with_changes() {
-        let changed = Shading { roughness_floor: 0.1, specular_aa: None, ..Quality::Low.shading() };
-        assert_eq!(shading(Quality::Low.shading(), "aa=on,aa=off,floor=0.1"), Ok(changed));
-        assert_eq!(quality("low"), Ok(Quality::Low));
-        assert!(quality("best").is_err_and(|error| error.contains("low, high, ultra")));
-        assert!(shading(Quality::High.shading(), "aa").is_err_and(|error| error.contains("--shade aa")));
+pub fn taken(
+    options: Vec<program::clap::Arg>,
+    words: &[&str],
+    mut take: impl FnMut(&Item) -> Result<bool, String>,
+) -> Result<(), String> {
+    let command = program::cli::command("render", "", "").args(options);
+    let parsed = program::cli::parse(command, words.iter().map(std::ffi::OsString::from))?;
+    let program::cli::Parsed::Given(given) = parsed else { return Err("help".into()) };
+    for item in given {
+        assert!(take(&item)?, "{}", item.name());
     }
-
-    #[test]
-    fn switches_and_numbers_are_checked() {
-        assert_eq!((switch("--inline", "on"), switch("--inline", "off")), (Ok(true), Ok(false)));
-        assert!(switch("--inline", "yes").is_err_and(|error| error.contains("--inline yes")));
-        assert_eq!(number("--dither", "0.5", 0.0..=1.0), Ok(0.5));
-        assert!(number("--dither", "1.5", 0.0..=1.0).is_err_and(|error| error.contains("0 to 1")));
-    }
+    Ok(())
 }

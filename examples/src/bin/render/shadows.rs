@@ -1,31 +1,35 @@
 //! Shadow options.
 
-use crate::parse::pairs;
-use framegraph_passes::gpu_scene::shadow_views::{
-    ContactShadows, Fit, MAX_MAPS, ShadowFilter, ShadowSettings, Splits, local_layers, local_maps,
-};
+use crate::parse::fields;
+use framegraph_passes::SettingsTable;
+use framegraph_passes::gpu_scene::shadow_views::{ShadowSettings, local_layers, local_maps};
 use framegraph_passes::light::sun::has_sun;
 use framegraph_scene::{Light, Scene};
 use glam::DVec3;
-use lexopt::Parser;
+use program::clap::Arg;
+use program::cli::{Item, flag, option};
 
-/// Help section.
-pub const HELP: &str = "\
-SHADOWS
-  --shadows FILTER     off, pcf (3x3 tent), dpcf or pcss (variable penumbra), vsm or evsm (16- or 32-bit moments) (pcf)
-  --cascades N         cascades of the sun's shadow map, 1 to 4 (1)
-  --shadow KEY=X,...   map-size=N (side of a shadow map in texels, 2048), fit=lispsm|tight|stable (lispsm),
-                       splits=uniform|log|practical:L|A:B:C (relative to the range, 0.125:0.25:0.5),
-                       far=M (maximum distance with a fade; none), constant-bias=M (0.001), normal-bias=X (half texels, 2),
-                       slope-bias=X (2), bulb=M|disc (light size for penumbrae; disc: the light's own size).
-                       Moments: blur=TEXELS, levels=N, samples=1|4, bleed=X (light-bleeding reduction) (0, 1, 1, 0.15).
-                       Punctual lights: punctual=N (maximum number of maps, 12), layers=N (maximum number of texture layers
-                       for these maps, each as large as a map of the sun; as needed).
-                       contact=on|off|STEPS:M (screen-space contact shadows, rays of M meters; off),
-                       keep=on|off (draw maps in the first frame, later only those that change; off)
-  --show-cascades      tint surfaces by their cascade
-  --no-shadows         same as --shadows off
-";
+/// Declares the options of this module.
+pub fn options() -> Vec<Arg> {
+    let all = vec![
+        option(
+            "shadows",
+            "FILTER",
+            "off, pcf (3x3 tent), dpcf or pcss (variable penumbra), vsm or evsm (16- or 32-bit moments) (pcf)",
+        ),
+        option("cascades", "N", "Cascades of the sun's shadow map, 1 to 4 (1)"),
+        option(
+            "shadow",
+            "KEY=X,...",
+            "Settings of shadow maps; `--shadow help` lists the keys. keep=on draws maps in the first frame, later \
+             only \
+             those that change (off)",
+        ),
+        flag("show-cascades", "Tint surfaces by their cascade"),
+        flag("no-shadows", "Same as --shadows off"),
+    ];
+    all.into_iter().map(|option| option.help_heading("Shadows")).collect()
+}
 
 /// Default maximum number of shadow maps of punctual lights: two point lights.
 const PUNCTUAL_MAPS: u8 = 12;
@@ -69,81 +73,34 @@ impl Shadows {
     ///
     /// # Errors
     /// One line that names the option and the expected value.
-    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, String> {
-        let mut value = || {
-            let value = parser.value().map_err(|_| format!("--{name}: missing value"))?;
-            value.into_string().map_err(|v| format!("--{name} {v:?}: the value is not Unicode"))
-        };
-        match name {
+    pub fn take(&mut self, item: &Item) -> Result<bool, String> {
+        match item.name() {
             "no-shadows" => self.off = true,
             "show-cascades" => self.settings.show_cascades = true,
             "shadows" => {
-                let value = value()?;
+                let value = item.text()?;
                 self.off = value == "off";
                 if !self.off {
-                    let names = || ShadowFilter::ALL.map(ShadowFilter::name).join(", ");
-                    let unknown = || format!("--shadows {value}: unknown filter; expected off, {}", names());
-                    self.settings.filter = ShadowFilter::from_name(&value).ok_or_else(unknown)?;
+                    let wrong = |error| format!("--shadows {value}: {error}");
+                    self.settings.set("filter", &value).map_err(|error| wrong(error.to_string()))?;
                 }
             }
-            "cascades" => self.settings.cascades = number("--cascades", &value()?, 1.0, 4.0)? as u8,
+            "cascades" => self.settings.cascades = item.parse("1 to 4", cascades)?,
             "shadow" => {
-                for (key, value) in pairs("--shadow", &value()?)? {
-                    self.set(key, value)?;
+                for pair in item.text()?.split(',').filter(|pair| !pair.is_empty()) {
+                    match pair {
+                        "keep=on" => self.keep = true,
+                        "keep=off" => self.keep = false,
+                        _ if pair.starts_with("keep") => {
+                            return Err(format!("--shadow {pair}: expected keep=on or keep=off"));
+                        }
+                        _ => fields("shadow", pair, &mut self.settings)?,
+                    }
                 }
             }
             _ => return Ok(false),
         }
         Ok(true)
-    }
-
-    fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
-        let settings = &mut self.settings;
-        let option = format!("--shadow {key}");
-        let number = |low, high| number(&option, value, low, high);
-        match key {
-            "map-size" | "texels" => settings.map_texels = number(16.0, 16384.0)? as u32,
-            "fit" => {
-                settings.fit = match value {
-                    "lispsm" => Fit::Tight { lispsm: true },
-                    "tight" => Fit::Tight { lispsm: false },
-                    "stable" => Fit::Stable,
-                    _ => return Err(format!("{option}={value}: expected `lispsm`, `tight` or `stable`")),
-                }
-            }
-            "splits" => settings.splits = splits(&option, value)?,
-            "far" => settings.far_m = Some(number(0.01, 1e7)?),
-            "constant-bias" => settings.bias.constant_m = number(0.0, 10.0)? as f32,
-            "normal-bias" => settings.bias.normal = number(0.0, 100.0)? as f32,
-            "slope-bias" => settings.bias.slope = number(0.0, 100.0)? as f32,
-            "bulb" => settings.bulb_m = if value == "disc" { None } else { Some(number(1e-6, 1e3)? as f32) },
-            "blur" => settings.moments.blur_texels = number(0.0, 125.0)? as f32,
-            "levels" => settings.moments.levels = number(1.0, 8.0)? as u8,
-            "samples" => settings.moments.samples = if number(1.0, 4.0)? > 2.0 { 4 } else { 1 },
-            "bleed" => settings.moments.bleed = number(0.0, 0.99)? as f32,
-            "contact" => {
-                settings.contact = match (value, value.split_once(':')) {
-                    ("off", _) => None,
-                    ("on", _) => Some(ContactShadows::FILAMENT),
-                    (_, Some((steps, distance_m))) => Some(ContactShadows {
-                        steps: self::number(&option, steps, 1.0, 256.0)? as u32,
-                        distance_m: self::number(&option, distance_m, 0.001, 100.0)? as f32,
-                    }),
-                    _ => return Err(format!("{option}={value}: expected `on`, `off` or STEPS:METERS")),
-                }
-            }
-            "keep" => {
-                self.keep = match value {
-                    "on" => true,
-                    "off" => false,
-                    _ => return Err(format!("{option}={value}: expected `on` or `off`")),
-                }
-            }
-            "layers" => settings.local_layers = number(1.0, f64::from(MAX_MAPS))? as u8,
-            "punctual" | "local" => settings.local_maps = number(0.0, f64::from(MAX_MAPS - 4))? as u8,
-            _ => return Err(format!("--shadow {key}: unknown key; see `render --help`")),
-        }
-        Ok(())
     }
 
     /// Returns the shadow settings for a scene seen from `eye`, with the sun of its environment; `None` if no light casts
@@ -157,38 +114,18 @@ impl Shadows {
     }
 }
 
-fn splits(option: &str, value: &str) -> Result<Splits, String> {
-    let share = |text: &str| number(option, text, 0.0, 1.0);
-    let parts: Vec<&str> = value.split(':').collect();
-    Ok(match parts.as_slice() {
-        ["uniform"] => Splits::Uniform,
-        ["log"] => Splits::Logarithmic,
-        ["practical", lambda] => Splits::Practical(share(lambda)?),
-        [a, b, c] => Splits::At([share(a)?, share(b)?, share(c)?]),
-        _ => return Err(format!("{option}={value}: expected `uniform`, `log`, `practical:L` or A:B:C")),
-    })
-}
-
-fn number(option: &str, text: &str, low: f64, high: f64) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (low..=high).contains(&value) => Ok(value),
-        _ => Err(format!("{option} {text}: expected a number from {low} to {high}")),
-    }
+fn cascades(text: &str) -> Option<u8> {
+    text.parse().ok().filter(|cascades| (1..=4).contains(cascades))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::ffi::OsString;
+    use framegraph_passes::gpu_scene::shadow_views::{Fit, ShadowFilter, Splits};
 
     fn parsed(words: &[&str]) -> Result<Shadows, String> {
         let mut shadows = Shadows::default();
-        let mut parser = Parser::from_args(words.iter().map(OsString::from));
-        while let Some(arg) = parser.next().map_err(|e| e.to_string())? {
-            let lexopt::Arg::Long(name) = arg else { return Err("expected an option".into()) };
-            let name = name.to_owned();
-            assert!(shadows.take(&name, &mut parser)?, "{name}");
-        }
+        crate::parse::taken(options(), words, |item| shadows.take(item))?;
         Ok(shadows)
     }
 

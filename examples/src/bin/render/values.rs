@@ -3,54 +3,51 @@
 use framegraph::Alias;
 use framegraph_scene::CameraChoice;
 use program::bytes;
+use program::cli::Item;
 use std::str::FromStr;
 
 /// Parses width and height of a picture, both at least 1.
 ///
 /// # Errors
 /// One line that names the option.
-pub fn size(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || format!("--size {text}: expected two whole numbers, such as 1280x720");
-    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
-    let size = [width, height].map(|side| side.parse::<u32>());
-    let [Ok(width), Ok(height)] = size else { return Err(wrong()) };
-    if width == 0 || height == 0 {
-        return Err(format!("--size {text}: both sides must be at least 1"));
+pub fn size(item: &Item) -> Result<[u32; 2], String> {
+    let size = item.parse("two whole numbers, such as 1280x720", |text| {
+        let (width, height) = text.split_once(['x', 'X'])?;
+        Some([width.parse().ok()?, height.parse().ok()?])
+    })?;
+    match size.contains(&0) {
+        true => Err(format!("--size {}x{}: both sides must be at least 1", size[0], size[1])),
+        false => Ok(size),
     }
-    Ok([width, height])
 }
 
 /// Parses the number of samples per pixel.
 ///
 /// # Errors
 /// One line that names the option.
-pub fn samples(text: &str) -> Result<u8, String> {
-    match text {
-        "1" => Ok(1),
-        "4" => Ok(4),
-        _ => Err(format!("--msaa {text}: expected 1 or 4")),
-    }
+pub fn samples(item: &Item) -> Result<u8, String> {
+    item.parse("1 or 4", |text| text.parse().ok().filter(|samples| matches!(samples, 1 | 4)))
 }
 
 /// Parses the mode of memory aliasing.
 ///
 /// # Errors
 /// One line that names the option.
-pub fn alias(text: &str) -> Result<Alias, String> {
-    match text {
-        "heap" => Ok(Alias::Heap),
-        "pool" => Ok(Alias::Pool),
-        "none" => Ok(Alias::Off),
-        _ => Err(format!("--alias {text}: expected `heap`, `pool` or `none`")),
-    }
+pub fn alias(item: &Item) -> Result<Alias, String> {
+    item.parse("`heap`, `pool` or `none`", |text| match text {
+        "heap" => Some(Alias::Heap),
+        "pool" => Some(Alias::Pool),
+        "none" => Some(Alias::Off),
+        _ => None,
+    })
 }
 
 /// Parses a positive number of bytes.
 ///
 /// # Errors
 /// One line that names the option.
-pub fn memory(text: &str) -> Result<u64, String> {
-    bytes(text).filter(|bytes| *bytes > 0).ok_or_else(|| format!("--memory {text}: expected bytes, such as 512MiB"))
+pub fn memory(item: &Item) -> Result<u64, String> {
+    item.parse("bytes, such as 512MiB", |text| bytes(text).filter(|bytes| *bytes > 0))
 }
 
 /// Parses a camera name or position.
@@ -65,21 +62,18 @@ pub fn camera(text: &str) -> Result<CameraChoice, String> {
 ///
 /// # Errors
 /// One line that names the option.
-pub fn threads(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        _ if text == "auto" => Ok(0),
-        Ok(threads @ 1..=256) => Ok(threads),
-        _ => Err(format!("--threads {text}: expected `auto` or a number from 1 to 256")),
-    }
+pub fn threads(item: &Item) -> Result<usize, String> {
+    item.parse("`auto` or a number from 1 to 256", |text| match text.parse() {
+        _ if text == "auto" => Some(0),
+        Ok(threads @ 1..=256) => Some(threads),
+        _ => None,
+    })
 }
 
 /// Parses the number of measured frames.
 ///
 /// # Errors
 /// One line that names the option.
-pub fn frames(text: &str) -> Result<u32, String> {
-    match text.parse::<u32>() {
-        Ok(frames @ 1..=10_000) => Ok(frames),
-        _ => Err(format!("--frames {text}: expected a number from 1 to 10000")),
-    }
+pub fn frames(item: &Item) -> Result<u32, String> {
+    item.parse("a number from 1 to 10000", |text| text.parse().ok().filter(|frames| (1..=10_000).contains(frames)))
 }

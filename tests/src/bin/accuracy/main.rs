@@ -24,7 +24,7 @@ use tests::lab::{html, markdown, techniques};
 const BUDGET: &str = "budget";
 
 fn main() -> ExitCode {
-    let args = match Args::parse() {
+    let args = match Args::parse(std::env::args_os().skip(1)) {
         Ok(args) => args,
         Err(reason) => {
             program::error(format_args!("{reason}"));
@@ -43,8 +43,8 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> Outcome<()> {
     let file = args.out.join("accuracy.json");
     match &args.wanted {
-        Wanted::Help => {
-            program::print(args::HELP);
+        Wanted::Help(text) => {
+            program::print(text);
             Ok(())
         }
         Wanted::Measure => measured(args, &file),

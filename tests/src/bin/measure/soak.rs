@@ -5,39 +5,38 @@
 
 use crate::{Outcome, adapter};
 use framegraph_wgpu::{AdapterRequest, Gpu};
+use program::cli::{self, Parsed, option};
 use tests::soak::{Soak, Trouble};
-
-const HELP: &str = "\
-soak: the standard frame under random sizes, effects and scenes
-
-  --frames N    frames to draw (10000)
-  --largest PX  most pixels of a side (512)
-  --rows N      rows to print (10)
-  --reload N    replace all shaders each N frames (not at all)
-  --lose N      lose the device each N frames, and make everything anew (not at all)
-
-WGPU_BACKEND=noop draws nothing and validates everything.
-";
 
 /// Draws frames and prints rows.
 pub fn run(words: &[&str]) -> Outcome {
     let (mut frames, mut largest, mut rows) = (10_000_usize, 512_u32, 10_usize);
     let open = || Gpu::open(&AdapterRequest::from_env());
     let mut trouble = Trouble { reload_every: usize::MAX, lose_every: usize::MAX, open };
-    let mut arguments = lexopt::Parser::from_args(words);
-    while let Some(argument) = arguments.next()? {
-        use lexopt::ValueExt;
-        match argument {
-            lexopt::Arg::Long("frames") => frames = arguments.value()?.parse()?,
-            lexopt::Arg::Long("largest") => largest = arguments.value()?.parse()?,
-            lexopt::Arg::Long("rows") => rows = arguments.value()?.parse()?,
-            lexopt::Arg::Long("reload") => trouble.reload_every = arguments.value()?.parse()?,
-            lexopt::Arg::Long("lose") => trouble.lose_every = arguments.value()?.parse()?,
-            lexopt::Arg::Long("help") => {
-                program::print(HELP);
-                return Ok(true);
-            }
-            other => return Err(other.unexpected().into()),
+    let about = "The standard frame under random sizes, effects and scenes";
+    let command = cli::command("measure soak", about, "WGPU_BACKEND=noop draws nothing and validates everything.")
+        .args([
+            option("frames", "N", "Frames to draw (10000)"),
+            option("largest", "PX", "Maximum number of pixels of a side (512)"),
+            option("rows", "N", "Rows to print (10)"),
+            option("reload", "N", "Replace all shaders each N frames (not at all)"),
+            option("lose", "N", "Lose the device each N frames, and make everything anew (not at all)"),
+        ]);
+    let given = match cli::parse(command, words.iter().map(Into::into))? {
+        Parsed::Help(text) => {
+            program::print(text);
+            return Ok(true);
+        }
+        Parsed::Given(given) => given,
+    };
+    for item in given {
+        let number = item.parse("a whole number", |text| text.parse::<usize>().ok())?;
+        match item.name() {
+            "frames" => frames = number,
+            "largest" => largest = number.try_into()?,
+            "rows" => rows = number,
+            "reload" => trouble.reload_every = number,
+            _ => trouble.lose_every = number,
         }
     }
     let gpu = adapter()?;

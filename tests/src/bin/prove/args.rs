@@ -1,17 +1,27 @@
 //! Command line of `prove`.
 
+use program::clap;
+use program::cli::{self, Parsed, flag, option};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Text of `--help`.
-pub const HELP: &str = "\
-Verifies the compiler's claims and prints docs/measurements/proofs.md.
+/// Returns the declaration of all options.
+fn command() -> clap::Command {
+    cli::command("prove", "Verifies the compiler's claims and prints docs/measurements/proofs.md.", "").args([
+        flag("quick", "Only the parts that take seconds and are machine-independent"),
+        option("dsa", "DIR", "Folder of offset-assignment instances NAME.CAPACITY.csv").conflicts_with("quick"),
+        option("out", "FILE", "Output file; default: standard output"),
+    ])
+}
 
-usage: prove [--quick] [--dsa DIR] [--out FILE]
-
-  --quick    only the parts that take seconds and are machine-independent
-  --dsa DIR  folder of offset-assignment instances NAME.CAPACITY.csv
-  --out FILE output file; default: standard output
-";
+/// Parsed command line.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Print the help.
+    Help(String),
+    /// Verify.
+    Run(Args),
+}
 
 /// Parsed options.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -24,30 +34,21 @@ pub struct Args {
     pub out: Option<PathBuf>,
 }
 
-/// Parses the command line; returns `None` if help is requested.
+/// Parses the command line, without the program's name.
 ///
 /// # Errors
 /// One line that names the wrong option.
-pub fn parse(words: impl Iterator<Item = String>) -> Result<Option<Args>, String> {
-    let mut args = Args::default();
-    let mut words = words;
-    while let Some(word) = words.next() {
-        let mut value = || words.next().map(PathBuf::from).ok_or_else(|| format!("{word} needs a value; see --help"));
-        match word.as_str() {
-            "--help" => return Ok(None),
-            "--quick" => args.quick = true,
-            "--dsa" => args.dsa = Some(value()?),
-            "--out" => args.out = Some(value()?),
-            _ => return Err(format!("unknown option `{word}`; see --help")),
-        }
-    }
-    if args.quick && args.dsa.is_some() {
-        return Err("--dsa cannot be combined with --quick, which skips long runs".into());
-    }
+pub fn parse(words: impl Iterator<Item = OsString>) -> Result<Command, String> {
+    let given = match cli::parse(command(), words)? {
+        Parsed::Help(text) => return Ok(Command::Help(text)),
+        Parsed::Given(given) => given,
+    };
+    let path = |name| given.values(name).next().map(PathBuf::from);
+    let args = Args { quick: given.has("quick"), dsa: path("dsa"), out: path("out") };
     if let Some(folder) = args.dsa.as_deref().filter(|f| !f.is_dir()) {
         return Err(format!("--dsa: {}: no such folder", folder.display()));
     }
-    Ok(Some(args))
+    Ok(Command::Run(args))
 }
 
 #[cfg(test)]
@@ -56,10 +57,10 @@ mod tests {
 
     #[test]
     fn options_are_read_and_mistakes_named() {
-        let read = |line: &str| parse(line.split_whitespace().map(str::to_owned));
+        let read = |line: &str| parse(line.split_whitespace().map(OsString::from));
         let expected = Args { quick: false, dsa: Some("src".into()), out: Some("b".into()) };
-        assert_eq!(read("--dsa src --out b"), Ok(Some(expected)));
-        assert_eq!(read("--quick --help"), Ok(None));
+        assert_eq!(read("--dsa src --out b"), Ok(Command::Run(expected)));
+        assert!(matches!(read("--quick --help"), Ok(Command::Help(_))));
         for (line, named) in
             [("--fast", "--fast"), ("--dsa", "--dsa"), ("--quick --dsa a", "--quick"), ("--dsa nowhere", "nowhere")]
         {

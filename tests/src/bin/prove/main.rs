@@ -18,17 +18,17 @@ mod planted;
 mod pools;
 mod table;
 
-use args::Args;
+use args::{Args, Command};
 use document::Document;
 use program::interrupt;
 use program::outputs::Outputs;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let args = match args::parse(std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned())) {
-        Ok(Some(args)) => args,
-        Ok(None) => {
-            program::print(args::HELP);
+    let args = match args::parse(std::env::args_os().skip(1)) {
+        Ok(Command::Run(args)) => args,
+        Ok(Command::Help(text)) => {
+            program::print(text);
             return program::exit(0);
         }
         Err(error) => return fail(2, &[error]),

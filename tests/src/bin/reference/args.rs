@@ -2,31 +2,42 @@
 
 use ::tests::files::references;
 use ::tests::reference::studio::Shade;
+use program::clap::{self, ArgAction};
+use program::cli::{self, Parsed, argument, flag, option};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Text of `--help`.
-pub const HELP: &str = "\
-Renders the scenes described in a folder, and compares them with reference pictures.
+const ABOUT: &str = "Renders the scenes described in a folder, and compares them with reference pictures.";
 
-usage: reference [DIR [ID...]] [options]
-
-DIR has statements (.json) with their pictures (.exr or .png) and charts (.csv). The default is
-tests/references/filament of this repository. An ID selects a statement by its name without extension.
-
-  --assets DIR         folder of models that statements name by their SHA-256
-  --out DIR            write rendered pictures (ID.png, ID.exr) and differences (ID.difference.png: 8-bit
-                       differences times 8)
-  --json FILE          write the table as JSON
-  --quality maker|low|high|ultra
-                       shading quality: that of Filament's references, which is our low quality with the exact
-                       DFG table and without occlusion of reflections, or a preset (maker)
-  --compare-quality    compare the high quality with the low one, instead of with the references
-  --help               print this help
-
+const AFTER: &str = "\
 Exit codes: 0 if every rule holds; 1 if one does not, or accepts a picture that is a tenth too bright; 2 on
 invalid input or output; 128 and its number after a signal.
 Scenes with features that are not implemented are skipped, and their keys are listed.";
+
+/// Returns the declaration of all options.
+fn command() -> clap::Command {
+    cli::command("reference", ABOUT, AFTER).override_usage("reference [DIR [ID...]] [OPTIONS]").args([
+        argument(
+            "DIR",
+            "Statements (.json) with their pictures (.exr or .png) and charts (.csv); default: tests/references/filament",
+        ),
+        argument("ID", "Selects a statement by its name without extension").num_args(0..).action(ArgAction::Append),
+        option("assets", "DIR", "Folder of models that statements name by their SHA-256"),
+        option(
+            "out",
+            "DIR",
+            "Write rendered pictures (ID.png, ID.exr) and differences (ID.difference.png: 8-bit differences times 8)",
+        ),
+        option("json", "FILE", "Write the table as JSON"),
+        option(
+            "quality",
+            "maker|low|high|ultra",
+            "Shading quality: that of Filament's references, which is our low quality with the exact DFG table and without \
+             occlusion of reflections, or a preset (maker)",
+        ),
+        flag("compare-quality", "Compare the high quality with the low one, instead of with the references"),
+    ])
+}
 
 /// Parsed options.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,7 +62,7 @@ pub struct Args {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Command {
     /// Print the help.
-    Help,
+    Help(String),
     /// Compare pictures.
     Run(Args),
 }
@@ -61,10 +72,12 @@ pub enum Command {
 /// # Errors
 /// One line that names the option and the values it takes.
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
-    use lexopt::prelude::*;
-    let mut parser = lexopt::Parser::from_args(args);
+    let given = match cli::parse(command(), args)? {
+        Parsed::Help(text) => return Ok(Command::Help(text)),
+        Parsed::Given(given) => given,
+    };
     let mut found = Args {
-        folder: PathBuf::new(),
+        folder: references(),
         ids: Vec::new(),
         assets: None,
         out: None,
@@ -72,34 +85,17 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         compare_quality: false,
         json: None,
     };
-    let mut folder = None;
-    while let Some(arg) = parser.next().map_err(|error| error.to_string())? {
-        let path = |parser: &mut lexopt::Parser, option: &str| {
-            parser.value().map(PathBuf::from).map_err(|_| format!("{option}: missing value"))
-        };
-        match arg {
-            Long("help") | Short('h') => return Ok(Command::Help),
-            Long("assets") => found.assets = Some(path(&mut parser, "--assets")?),
-            Long("out") => found.out = Some(path(&mut parser, "--out")?),
-            Long("quality") => {
-                let given =
-                    parser.value().map_err(|_| "--quality: missing value; use maker, low, high or ultra".to_owned())?;
-                let named = given.to_str().and_then(Shade::from_name);
-                found.shade = named.ok_or_else(|| {
-                    format!("--quality {}: unknown quality; use maker, low, high or ultra", given.display())
-                })?;
-            }
-            Long("compare-quality") => found.compare_quality = true,
-            Long("json") => found.json = Some(path(&mut parser, "--json")?),
-            Value(value) if folder.is_none() => folder = Some(PathBuf::from(value)),
-            Value(value) => {
-                found.ids.push(value.into_string().map_err(|v| format!("ID {v:?}: the name is not Unicode"))?);
-            }
-            Long(name) => return Err(format!("--{name}: unknown option; see `reference --help`")),
-            Short(name) => return Err(format!("-{name}: unknown option; see `reference --help`")),
+    for item in given {
+        match item.name() {
+            "DIR" => found.folder = item.raw().into(),
+            "ID" => found.ids.extend(item.values()?),
+            "assets" => found.assets = Some(item.raw().into()),
+            "out" => found.out = Some(item.raw().into()),
+            "quality" => found.shade = item.parse("maker, low, high or ultra", Shade::from_name)?,
+            "compare-quality" => found.compare_quality = true,
+            _ => found.json = Some(item.raw().into()),
         }
     }
-    found.folder = folder.unwrap_or_else(references);
     Ok(Command::Run(found))
 }
 
@@ -125,7 +121,7 @@ mod tests {
             json: Some("j".into()),
         };
         assert_eq!(found, Ok(Command::Run(expected)));
-        assert_eq!(parsed(&["--help"]), Ok(Command::Help));
+        assert!(matches!(parsed(&["--help"]), Ok(Command::Help(_))));
         let Ok(Command::Run(found)) = parsed(&["--compare-quality"]) else { panic!("a sound command line") };
         assert!(
             found.compare_quality && found.folder.join("02_grid_sun_noshadow.json").is_file(),
@@ -136,7 +132,7 @@ mod tests {
     #[test]
     fn wrong_words_are_named() {
         for (words, named) in [
-            (&["refs", "--out"][..], "--out: missing value"),
+            (&["refs", "--out"][..], "--out: missing DIR"),
             (&["refs", "--fast"], "--fast: unknown option"),
             (&["refs", "--quality", "best"], "--quality best"),
             (&["refs", "-x"], "-x: unknown option"),

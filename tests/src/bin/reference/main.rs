@@ -16,8 +16,8 @@ use tests::reference::report;
 fn main() -> ExitCode {
     let args = match args::parse(std::env::args_os().skip(1)) {
         Ok(Command::Run(args)) => args,
-        Ok(Command::Help) => {
-            program::line(args::HELP);
+        Ok(Command::Help(text)) => {
+            program::print(text);
             return program::exit(0);
         }
         Err(told) => return refuse(&told),

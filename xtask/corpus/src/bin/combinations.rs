@@ -1,36 +1,25 @@
 //! Renders combinations of effects, options and parts of scenes, and reports the cases that fail.
 
 use corpus::combinations::{Options, Rendered, run};
-use lexopt::prelude::*;
+use program::cli::{self, Parsed, flag, option};
 use program::interrupt;
-use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-const HELP: &str = "\
-Renders combinations of effects, options and parts of scenes, each by its own `render` process.
+const ABOUT: &str = "Renders combinations of effects, options and parts of scenes, each by its own `render` process.";
 
-usage: combinations --render PROGRAM [options]
-
-  --render PROGRAM     the `render` program
-  --triples            every combination of three levels instead of two
-  --folder FOLDER      scenes and scraps (target/combinations)
-  --jobs N             processes at a time (the number of cores)
-  --seconds N          time limit of a case in seconds (120)
-  --memory SIZE        limit on the resident memory of a process (4GiB)
-
-Exit codes: 0 no findings, 1 findings, 2 bad input or output, 128 and its number after a signal.";
+const AFTER: &str = "Exit codes: 0 no findings, 1 findings, 2 bad input or output, 128 and its number after a signal.";
 
 fn main() -> ExitCode {
     let options = match parse() {
-        Ok(Some(options)) => options,
-        Ok(None) => {
-            program::line(HELP);
+        Ok(Wanted::Run(options)) => options,
+        Ok(Wanted::Help(text)) => {
+            program::print(text);
             return program::exit(0);
         }
         Err(error) => {
-            program::error(error.to_string());
+            program::error(error);
             return program::exit(2);
         }
     };
@@ -52,8 +41,28 @@ fn main() -> ExitCode {
     }
 }
 
-/// Reads the command line; none asks for the help.
-fn parse() -> Result<Option<Options>, Box<dyn Error>> {
+/// Parsed command line.
+enum Wanted {
+    /// Print the help.
+    Help(String),
+    /// Render combinations.
+    Run(Options),
+}
+
+/// Reads the command line.
+fn parse() -> Result<Wanted, String> {
+    let command = cli::command("combinations", ABOUT, AFTER).args([
+        option("render", "PROGRAM", "The `render` program").required(true),
+        flag("triples", "Every combination of three levels instead of two"),
+        option("folder", "FOLDER", "Scenes and scraps (target/combinations)"),
+        option("jobs", "N", "Processes at a time (the number of cores)"),
+        option("seconds", "N", "Time limit of a case in seconds (120)"),
+        option("memory", "SIZE", "Limit on the resident memory of a process (4GiB)"),
+    ]);
+    let given = match cli::parse(command, std::env::args_os().skip(1))? {
+        Parsed::Help(text) => return Ok(Wanted::Help(text)),
+        Parsed::Given(given) => given,
+    };
     let mut options = Options {
         strength: 2,
         render: PathBuf::new(),
@@ -63,27 +72,20 @@ fn parse() -> Result<Option<Options>, Box<dyn Error>> {
         limit: Duration::from_secs(120),
         memory_bytes: 4 << 30,
     };
-    let mut parser = lexopt::Parser::from_env();
-    while let Some(argument) = parser.next()? {
-        match argument {
-            Long("render") => options.render = std::path::absolute(PathBuf::from(parser.value()?))?,
-            Long("triples") => options.strength = 3,
-            Long("folder") => options.folder = parser.value()?.into(),
-            Long("jobs") => options.jobs = parser.value()?.parse()?,
-            Long("seconds") => options.limit = Duration::from_secs(parser.value()?.parse()?),
-            Long("memory") => {
-                let size = parser.value()?.string()?;
-                options.memory_bytes =
-                    program::bytes(&size).ok_or(format!("--memory {size}: give bytes, such as 2GiB"))?;
+    let absolute = |path: PathBuf| std::path::absolute(&path).map_err(|error| format!("{}: {error}", path.display()));
+    for item in given {
+        match item.name() {
+            "render" => options.render = absolute(item.raw().into())?,
+            "triples" => options.strength = 3,
+            "folder" => options.folder = item.raw().into(),
+            "jobs" => options.jobs = item.parse("a number of processes", |text| text.parse().ok())?,
+            "seconds" => {
+                options.limit = Duration::from_secs(item.parse("a number of seconds", |text| text.parse().ok())?);
             }
-            Long("help") | Short('h') => return Ok(None),
-            _ => return Err(argument.unexpected().into()),
+            _ => options.memory_bytes = item.parse("bytes, such as 2GiB", program::bytes)?,
         }
     }
-    if options.render.as_os_str().is_empty() {
-        return Err("--render: the program is missing; see --help".into());
-    }
-    options.folder = std::path::absolute(&options.folder)?;
+    options.folder = absolute(options.folder)?;
     options.light = options.folder.join("light");
-    Ok(Some(options))
+    Ok(Wanted::Run(options))
 }
