@@ -2,6 +2,7 @@
 
 mod changes;
 mod editing;
+mod grids;
 mod live;
 mod live_pictures;
 mod panels;
