@@ -159,9 +159,16 @@ impl Panes<'_> {
     fn view(&mut self, ui: &mut Ui, view: View) {
         let plan = self.session.plan.clone();
         let Some(plan) = plan.or_else(|| (!view.is_of_a_plan()).then(Arc::default)) else {
-            ui.centered_and_justified(|ui| {
-                ui.label("Open a plan (JSON) or a graph (RON): type its path above, or drop it here")
-            });
+            #[cfg(feature = "window")]
+            let waits = self.live.is_some();
+            #[cfg(not(feature = "window"))]
+            let waits = false;
+            let text = if waits {
+                "The plan appears when the scene is loaded"
+            } else {
+                "Open a plan (JSON) or a graph (RON): type its path above, or drop it here"
+            };
+            ui.centered_and_justified(|ui| ui.label(text));
             return;
         };
         if view == View::Inspector {
