@@ -264,7 +264,7 @@ impl Viewer {
             ui.add_enabled_ui(!self.recent.is_empty(), |ui| {
                 let chosen = ui.menu_button("Recent", |ui| {
                     let mut shown = |path: &std::path::PathBuf| ui.button(path.display().to_string()).clicked();
-                    self.recent.iter().filter(|path| shown(path)).cloned().last()
+                    self.recent.iter().filter(|path| shown(path)).last().cloned()
                 });
                 if let Some(path) = chosen.inner.flatten() {
                     self.open(&path, Role::Shown);

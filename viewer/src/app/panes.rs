@@ -60,7 +60,7 @@ impl Pane {
 /// Returns the default arrangement.
 ///
 /// Search and what-if are on the left, views as tabs in the center, the inspector on the right. With a live frame, its
-/// settings are on the left, and the frame stands beside the views, which are above the inspector.
+/// settings are on the left, the frame is in the center, and the views are on the right, above the inspector.
 pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let views = View::ALL.into_iter().filter(|view| *view != View::Inspector).map(Pane::View);

@@ -33,9 +33,9 @@ enum Done {
     /// It was drawn.
     Drawn(Result<(), String>),
     /// A texture was read.
-    Read(Box<Inspector>, Result<Found, String>),
+    Read(Box<(Inspector, Result<Found, String>)>),
     /// Debug modes were compared.
-    Bisected(Result<Bisecting, String>),
+    Bisected(Result<Box<Bisecting>, String>),
 }
 
 /// Picture in memory.
@@ -184,10 +184,10 @@ impl Live {
         let Some(running) = &self.running else { return };
         let frame = running.plans() ^ (u64::from(running.drawn()) << 20);
         let Some((target, inspector)) = self.preview.begin(running, frame) else { return };
-        let mut inspector = Box::new(inspector);
+        let mut inspector = inspector;
         self.work("reading a texture", session, move |running, _| {
             let found = read(running, &mut inspector, target);
-            Done::Read(inspector, found)
+            Done::Read(Box::new((inspector, found)))
         });
     }
 
@@ -195,7 +195,7 @@ impl Live {
     pub fn bisect(&mut self, mut bisecting: Bisecting, session: &mut Session) {
         self.bisecting = None;
         self.work("comparing debug modes", session, move |running, handle| {
-            Done::Bisected(bisecting.run(running, handle).map(|()| bisecting))
+            Done::Bisected(bisecting.run(running, handle).map(|()| Box::new(bisecting)))
         });
     }
 
@@ -272,10 +272,13 @@ impl Live {
                 self.copy();
                 self.report(session);
             }
-            Done::Read(inspector, found) => self.preview.take(*inspector, found),
+            Done::Read(read) => {
+                let (inspector, found) = *read;
+                self.preview.take(inspector, found);
+            }
             Done::Bisected(result) => {
                 match result {
-                    Ok(bisecting) => self.bisecting = Some(bisecting).filter(Bisecting::is_done),
+                    Ok(bisecting) => self.bisecting = Some(*bisecting).filter(Bisecting::is_done),
                     Err(error) => session.say(error),
                 }
                 self.again();

@@ -148,7 +148,7 @@ fn attachments(plan: &PlanData, of_step: &[[usize; 2]], cells: &mut [BTreeMap<us
             for column in *first..=*last {
                 cells.entry(column).or_default().attached = true;
             }
-            // Of several levels or layers, the most expensive operation is shown.
+            // The most expensive operation of several levels or layers is shown.
             let load = attached.iter().max_by_key(|a| ["clear", "load"].iter().position(|op| *op == a.load));
             if let Some(load) = load.filter(|a| !a.role.starts_with("resolve")) {
                 let load = match load.load.as_str() {

@@ -10,6 +10,7 @@ mod pictures;
 mod program;
 mod saved;
 mod sizes;
+mod textures;
 mod views;
 mod window;
 

@@ -40,8 +40,10 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
             let words = ui.painter().layout(statistics(live), font, Color32::WHITE, width);
             let at = rect.left_bottom() + vec2(6.0, -6.0 - words.size().y);
             let behind = Rect::from_min_size(at, words.size()).expand(3.0);
-            ui.painter().rect_filled(behind, 2.0, Color32::from_black_alpha(170));
-            ui.painter().galley(at, words, Color32::WHITE);
+            if !words.is_empty() {
+                ui.painter().rect_filled(behind, 2.0, Color32::from_black_alpha(170));
+                ui.painter().galley(at, words, Color32::WHITE);
+            }
         }
         None => {
             let text = if live.doing().is_some() { "Loading" } else { "No scene: drop a glTF file here" };
