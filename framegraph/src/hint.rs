@@ -66,7 +66,7 @@ impl Plan {
         };
         let Some(texture) = self.graph().resources()[resource.index()].desc.texture() else { return true };
         let extent = texture.mip_extent(self.frame(), 0);
-        step.kind != PassKind::Raster || extent == step.extent && u32::from(texture.layers) == u32::from(step.layers)
+        step.kind != PassKind::Raster || extent == step.extent && u32::from(texture.layers) == step.layers
     }
 
     /// Returns the decision as a sentence with names. For passes that were not merged or inlined, appends a hint.

@@ -32,6 +32,8 @@ pub struct Viewer {
     list: List,
     /// Pan and zoom of each view.
     canvases: BTreeMap<View, Canvas>,
+    /// Tables of the timeline and of memory.
+    grids: panes::Grids,
     /// Cached drawings of the views.
     drawings: drawings::Drawings,
     /// Document to which zoom and search belong.
@@ -65,6 +67,7 @@ impl Viewer {
             tiles: panes::arranged(false),
             list: List::default(),
             canvases: BTreeMap::new(),
+            grids: panes::Grids::default(),
             drawings: drawings::Drawings::default(),
             document: 0,
             strip: strip::Strip::default(),
@@ -115,11 +118,12 @@ impl Viewer {
         if !self.session.messages.is_empty() || self.session.notice.is_some() {
             Panel::top("messages").show(ui, |ui| self.messages(ui));
         }
-        let Self { session, tiles, list, canvases, drawings, strip, .. } = self;
+        let Self { session, tiles, list, canvases, grids, drawings, strip, .. } = self;
         let mut behavior = panes::Panes {
             session,
             list,
             canvases,
+            grids,
             drawings,
             strip,
             #[cfg(feature = "window")]
@@ -154,6 +158,9 @@ impl Viewer {
 
     /// Returns the screen position of an item in a view; `None` if it is not visible.
     pub fn place_of(&self, view: View, item: Item) -> Option<egui::Pos2> {
+        if let Some(grid) = self.grids.of(view) {
+            return grid.place_of(item);
+        }
         self.canvases.get(&view)?.place_of(self.drawings.existing(view)?, item)
     }
 
@@ -180,6 +187,7 @@ impl Viewer {
     fn refresh(&mut self) {
         if std::mem::replace(&mut self.document, self.session.documents()) != self.session.documents() {
             self.canvases.clear();
+            self.grids = panes::Grids::default();
             self.list.search.clear();
         }
         self.drawings.refresh(&self.session);
@@ -256,7 +264,7 @@ impl Viewer {
             ui.add_enabled_ui(!self.recent.is_empty(), |ui| {
                 let chosen = ui.menu_button("Recent", |ui| {
                     let mut shown = |path: &std::path::PathBuf| ui.button(path.display().to_string()).clicked();
-                    self.recent.iter().filter(|path| shown(path)).cloned().last()
+                    self.recent.iter().filter(|path| shown(path)).last().cloned()
                 });
                 if let Some(path) = chosen.inner.flatten() {
                     self.open(&path, Role::Shown);

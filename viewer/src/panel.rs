@@ -1,6 +1,7 @@
 //! Panels for egui. Each is a function of plain data with a small state, so an engine can embed it in its windows.
 
 mod canvas;
+pub mod grid;
 mod inspector;
 mod list;
 mod paint;

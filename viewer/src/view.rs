@@ -9,6 +9,7 @@ mod heads;
 pub mod inspector;
 pub mod memory;
 pub mod queues;
+pub mod table;
 pub mod timeline;
 pub mod trace;
 

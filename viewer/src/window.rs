@@ -135,7 +135,12 @@ impl App for Program {
         self.viewer.show(ui);
         // Count frames only after the scene is loaded.
         let loading = self.viewer.live.as_ref().is_some_and(|live| live.running.is_none() && live.doing().is_some());
-        self.drawn += u64::from(!loading);
+        let of_scene = self.viewer.live.as_ref().map(|live| live.running.as_ref().map_or(0, |r| u64::from(r.drawn())));
+        match of_scene {
+            // Several frames of the window may show one frame of the scene.
+            Some(drawn) => self.drawn = self.drawn.max(drawn),
+            None => self.drawn += u64::from(!loading),
+        }
         let size = ui.input(|i| i.viewport().inner_rect.map(|rect| [rect.width(), rect.height()]));
         self.size = size.or(self.size);
         self.dark = match ui.ctx().options(|options| options.theme_preference) {

@@ -3,8 +3,11 @@
 use super::drawings::Drawings;
 use super::strip::Strip;
 use crate::drawing::Item;
+use crate::panel::grid::Grid;
 use crate::panel::{self, Canvas, Clicked, List, Shown};
+use crate::plan_data::PlanData;
 use crate::session::Session;
+use crate::view::table::Kind;
 use crate::view::{self, View};
 use egui::{Ui, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
@@ -57,7 +60,7 @@ impl Pane {
 /// Returns the default arrangement.
 ///
 /// Search and what-if are on the left, views as tabs in the center, the inspector on the right. With a live frame, its
-/// settings are on the left, and the frame stands beside the views, which are above the inspector.
+/// settings are on the left, the frame is in the center, and the views are on the right, above the inspector.
 pub(super) fn arranged(live: bool) -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let views = View::ALL.into_iter().filter(|view| *view != View::Inspector).map(Pane::View);
@@ -108,11 +111,37 @@ pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
     found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
 }
 
+/// Tables of the timeline and of memory.
+pub(super) struct Grids {
+    timeline: Grid,
+    memory: Grid,
+    /// Shows memory as a map of offsets instead of a table.
+    map: bool,
+}
+
+impl Default for Grids {
+    fn default() -> Self {
+        Self { timeline: Grid::new(Kind::Timeline), memory: Grid::new(Kind::Memory), map: true }
+    }
+}
+
+impl Grids {
+    /// Returns the table that a view shows; `None` if it shows a drawing.
+    pub fn of(&self, view: View) -> Option<&Grid> {
+        match view {
+            View::Timeline => Some(&self.timeline),
+            View::Memory if !self.map => Some(&self.memory),
+            _ => None,
+        }
+    }
+}
+
 /// State required to show the panes.
 pub(super) struct Panes<'a> {
     pub session: &'a mut Session,
     pub list: &'a mut List,
     pub canvases: &'a mut BTreeMap<View, Canvas>,
+    pub grids: &'a mut Grids,
     pub drawings: &'a mut Drawings,
     pub strip: &'a mut Strip,
     #[cfg(feature = "window")]
@@ -130,9 +159,16 @@ impl Panes<'_> {
     fn view(&mut self, ui: &mut Ui, view: View) {
         let plan = self.session.plan.clone();
         let Some(plan) = plan.or_else(|| (!view.is_of_a_plan()).then(Arc::default)) else {
-            ui.centered_and_justified(|ui| {
-                ui.label("Open a plan (JSON) or a graph (RON): type its path above, or drop it here")
-            });
+            #[cfg(feature = "window")]
+            let waits = self.live.is_some();
+            #[cfg(not(feature = "window"))]
+            let waits = false;
+            let text = if waits {
+                "The plan appears when the scene is loaded"
+            } else {
+                "Open a plan (JSON) or a graph (RON): type its path above, or drop it here"
+            };
+            ui.centered_and_justified(|ui| ui.label(text));
             return;
         };
         if view == View::Inspector {
@@ -146,6 +182,9 @@ impl Panes<'_> {
                 }
                 None => {}
             }
+            return;
+        }
+        if self.table(ui, view, &plan) {
             return;
         }
         let ctx = ui.ctx().clone();
@@ -190,6 +229,54 @@ impl Panes<'_> {
             Clicked::Empty => self.session.selected = None,
             Clicked::Item(item) => self.session.selected = Some(item),
         }
+    }
+
+    /// Shows a view as a table; returns false for views that are drawings.
+    fn table(&mut self, ui: &mut Ui, view: View, plan: &PlanData) -> bool {
+        if view == View::Memory {
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut self.grids.map, true, "map").on_hover_text("Offsets over steps");
+                let tip = "Resources with their sizes and offsets over steps";
+                ui.selectable_value(&mut self.grids.map, false, "table").on_hover_text(tip);
+            });
+        }
+        let grid = match view {
+            View::Timeline => &mut self.grids.timeline,
+            View::Memory if !self.grids.map => &mut self.grids.memory,
+            _ => return false,
+        };
+        let trace = self.session.trace.as_deref();
+        ui.horizontal_wrapped(|ui| {
+            if ui.small_button("Fit").on_hover_text("Show the whole view (F)").clicked() {
+                grid.fit();
+            }
+            let copies = [("Copy", "Copy the view as text"), ("SVG", "Copy the view as an SVG document")];
+            for (name, tip) in copies {
+                if ui.small_button(name).on_hover_text(tip).clicked() {
+                    let drawing = super::drawings::drawn(view, self.session);
+                    let text = match name {
+                        "SVG" => crate::drawing::svg(&drawing, panel::theme(ui)),
+                        _ => drawing.words(),
+                    };
+                    ui.ctx().copy_text(text);
+                }
+            }
+            grid.bar(ui);
+            if view == View::Timeline {
+                ui.label("Legend").on_hover_text(view::timeline::LEGEND);
+            }
+        });
+        if let Some(other) = trace.and_then(|trace| trace.mismatch(plan)).filter(|_| view == View::Timeline) {
+            ui.add(egui::Label::new(other).wrap());
+        }
+        let (generation, lit) = (self.session.generation(), self.session.lit());
+        let shown = panel::grid::Shown { plan, trace, generation, lit: &lit };
+        match grid.show(ui, view.word(), shown) {
+            Clicked::No => {}
+            Clicked::Empty => self.session.selected = None,
+            Clicked::Item(item) => self.session.selected = Some(item),
+        }
+        true
     }
 
     /// Shows a pane of the live frame.

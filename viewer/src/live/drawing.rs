@@ -12,6 +12,7 @@ use crate::plan_data::PlanData;
 use crate::session::Session;
 use egui::TextureId;
 use framegraph_wgpu::inspect::Inspector;
+use framegraph_wgpu::read_texture;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -20,7 +21,7 @@ const TIMES_S: f32 = 0.5;
 /// Maximum time that panels wait for a frame.
 const PATIENCE: Duration = Duration::from_millis(25);
 /// Time after which a busy device is asked again.
-const BUSY: Duration = Duration::from_millis(5);
+const BUSY: Duration = Duration::from_millis(15);
 /// Size of the frame before the viewport was first shown.
 const SIZE_PX: [u32; 2] = [1280, 720];
 
@@ -32,9 +33,19 @@ enum Done {
     /// It was drawn.
     Drawn(Result<(), String>),
     /// A texture was read.
-    Read(Box<Inspector>, Result<Found, String>),
+    Read(Box<(Inspector, Result<Found, String>)>),
     /// Debug modes were compared.
-    Bisected(Result<Bisecting, String>),
+    Bisected(Result<Box<Bisecting>, String>),
+}
+
+/// Picture in memory.
+pub struct Copied {
+    /// Width and height in pixels.
+    pub size_px: [u32; 2],
+    /// RGBA, 8 bits per channel.
+    pub rgba8: Vec<u8>,
+    /// Number of the picture, for caching.
+    pub made: u64,
 }
 
 /// Work that returns the frame with the result.
@@ -47,6 +58,9 @@ pub(super) struct Drawing {
     job: Option<(Work, Instant)>,
     /// Last picture: egui's id and the size in pixels.
     picture: Option<(TextureId, [u32; 2])>,
+    /// Copy of the last picture of a frame with a device of its own.
+    copy: Option<Copied>,
+    copying: Option<Job<Option<([u32; 2], Vec<u8>)>>>,
     /// The viewport was shown since the last frame of the window.
     shown: bool,
     /// Waits for every frame.
@@ -77,7 +91,8 @@ impl Drawing {
 
     /// Returns the state for another scene. A frame of the old scene that is still drawn is dropped.
     pub fn restarted(&self) -> Self {
-        Self { picture: self.picture, shown: self.shown, blocking: self.blocking, ..Self::default() }
+        let Self { picture, shown, blocking, .. } = *self;
+        Self { picture, shown, blocking, ..Self::default() }
     }
 }
 
@@ -105,13 +120,23 @@ impl Live {
 
     /// Returns the time after which the next frame may be drawn: a moment if the device or the thread is busy.
     pub fn next_frame(&self) -> Duration {
-        let waits = self.running.as_ref().is_none_or(Running::is_busy);
+        let waits = self.drawing.copying.is_some() || self.running.as_ref().is_none_or(Running::is_busy);
         if waits && !self.drawing.blocking { BUSY } else { Duration::ZERO }
     }
 
     /// Returns egui's id and the size of the last picture; `None` before the first frame.
     pub fn picture(&self) -> Option<(TextureId, [u32; 2])> {
         self.drawing.picture
+    }
+
+    /// Returns whether the frame has a device of its own.
+    pub fn has_own_device(&self) -> bool {
+        self.screen.apart
+    }
+
+    /// Returns the copy of the last picture, if the frame has a device of its own.
+    pub fn copied_picture(&self) -> Option<&Copied> {
+        self.drawing.copy.as_ref()
     }
 
     /// Draws the frame at the size of the viewport if required, and passes its plan and times to the session.
@@ -135,7 +160,7 @@ impl Live {
             return;
         }
         let Some(running) = &mut self.running else { return };
-        if !self.drawing.blocking && running.is_busy() {
+        if !self.drawing.blocking && (running.is_busy() || self.drawing.copying.is_some()) {
             return;
         }
         if let Some(rig) = &self.rig {
@@ -159,10 +184,10 @@ impl Live {
         let Some(running) = &self.running else { return };
         let frame = running.plans() ^ (u64::from(running.drawn()) << 20);
         let Some((target, inspector)) = self.preview.begin(running, frame) else { return };
-        let mut inspector = Box::new(inspector);
+        let mut inspector = inspector;
         self.work("reading a texture", session, move |running, _| {
             let found = read(running, &mut inspector, target);
-            Done::Read(inspector, found)
+            Done::Read(Box::new((inspector, found)))
         });
     }
 
@@ -170,7 +195,7 @@ impl Live {
     pub fn bisect(&mut self, mut bisecting: Bisecting, session: &mut Session) {
         self.bisecting = None;
         self.work("comparing debug modes", session, move |running, handle| {
-            Done::Bisected(bisecting.run(running, handle).map(|()| bisecting))
+            Done::Bisected(bisecting.run(running, handle).map(|()| Box::new(bisecting)))
         });
     }
 
@@ -201,11 +226,30 @@ impl Live {
 
     /// Takes the frame back from the thread that works on it. Waits at most the given time.
     pub(super) fn collect(&mut self, session: &mut Session, at_most: Duration) {
+        if let Some(copied) = self.drawing.copying.as_ref().and_then(|job| job.wait(Duration::ZERO)) {
+            let made = self.drawing.copy.as_ref().map_or(0, |copy| copy.made) + 1;
+            let copied = copied.map(|(size_px, rgba8)| Copied { size_px, rgba8, made });
+            (self.drawing.copying, self.drawing.copy) = (None, copied.or(self.drawing.copy.take()));
+        }
         let Some((job, _)) = &self.drawing.job else { return };
         if let Some((running, done)) = job.wait(at_most) {
             self.drawing.job = None;
             self.take_done(running, done, session);
         }
+    }
+
+    /// Copies the picture of a frame with a device of its own, on another thread.
+    fn copy(&mut self) {
+        let Some(running) = self.running.as_ref().filter(|_| self.screen.apart) else { return };
+        let (Some(texture), Some((_, size_px))) = (running.picture_texture().cloned(), running.picture()) else {
+            return;
+        };
+        let (gpu, wake) = (self.screen.gpu.clone(), self.wake.clone());
+        self.drawing.copying = Some(Job::start(
+            "copying a picture",
+            move || wake(),
+            move |_| read_texture(&gpu, &texture).ok().map(|pixels| (size_px, pixels.rgba8())),
+        ));
     }
 
     fn take_done(&mut self, running: Running, done: Done, session: &mut Session) {
@@ -225,12 +269,16 @@ impl Live {
                     return;
                 }
                 self.clock.tick(Instant::now());
+                self.copy();
                 self.report(session);
             }
-            Done::Read(inspector, found) => self.preview.take(*inspector, found),
+            Done::Read(read) => {
+                let (inspector, found) = *read;
+                self.preview.take(inspector, found);
+            }
             Done::Bisected(result) => {
                 match result {
-                    Ok(bisecting) => self.bisecting = Some(bisecting).filter(Bisecting::is_done),
+                    Ok(bisecting) => self.bisecting = Some(*bisecting).filter(Bisecting::is_done),
                     Err(error) => session.say(error),
                 }
                 self.again();

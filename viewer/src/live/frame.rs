@@ -1,12 +1,13 @@
 //! The standard frame of a scene, executed repeatedly into a texture for egui.
 
+mod planner;
+
 use super::camera::Rig;
 use super::capture::{Capture, Document};
 use super::factors::Factors;
 use super::loading::Loaded;
 use super::screen::Screen;
-use crate::standard_frame::{StandardFrame, declare};
-use crate::what_if::WhatIf;
+use crate::standard_frame::declare;
 use egui::TextureId;
 use framegraph::{Options, Plan};
 use framegraph_passes::effects::exposure::Measurement;
@@ -17,8 +18,8 @@ use framegraph_passes::light::sun::has_sun;
 use framegraph_passes::{
     CameraView, Effect, EffectSet, FactInput, FactMemory, Facts, FrameIndex, FrameSettings, Settings, ViewId, World,
 };
-use framegraph_scene::{Camera, Material, MaterialId, Scene};
-use framegraph_wgpu::debug::{Mode, Modes};
+use framegraph_scene::{Camera, Material, MaterialId};
+use framegraph_wgpu::debug::Modes;
 use framegraph_wgpu::{ExecutorOptions, FrameLoop};
 use glam::{DVec2, Vec2};
 use std::collections::BTreeMap;
@@ -399,32 +400,6 @@ impl Running {
     /// Returns whether uninitialized memory is poisoned.
     pub fn is_poisoned(&self) -> bool {
         self.poison
-    }
-
-    /// Returns a planner of the last drawn frame, and its unmodified what-if.
-    pub fn planner(&self, document: &Document, modes: &Modes) -> (Arc<StandardFrame>, WhatIf) {
-        let Loaded { name, scene, .. } = &self.loaded;
-        // Parts of the scene that settings depend on.
-        let (materials, instances) = (scene.materials.clone(), scene.instances.clone());
-        let needs = Scene { materials, instances, ..Scene::default() };
-        let frame = FrameSettings { settings: self.requested, ..document.frame };
-        let planner = StandardFrame::live(name, frame, Arc::new(needs), self.facts.clone());
-        let options = self.key.map_or_else(Options::default, |(_, options)| options);
-        let features = crate::what_if::Planner::features(&planner);
-        let no_cull = modes.0.contains(&Mode::NoCull);
-        let Options { frame: size, order, alias, merge, inline, memoryless, cull, .. } = options;
-        let question = WhatIf {
-            caps: self.screen.gpu.caps(),
-            frame: Some(size),
-            order,
-            alias,
-            cull: cull && !no_cull,
-            merge,
-            inline,
-            memoryless,
-            features,
-        };
-        (Arc::new(planner), question)
     }
 }
 

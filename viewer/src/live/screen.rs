@@ -3,7 +3,7 @@
 use eframe::egui_wgpu::{RenderState, Renderer};
 use egui::TextureId;
 use egui::mutex::RwLock;
-use framegraph_wgpu::Gpu;
+use framegraph_wgpu::{AdapterRequest, Gpu, is_software};
 use std::sync::Arc;
 
 /// Device shared by frames and panels.
@@ -13,23 +13,34 @@ pub struct Screen {
     pub gpu: Gpu,
     /// Renderer of the panels; `None` in tests without pictures.
     renderer: Option<Arc<RwLock<Renderer>>>,
+    /// The frame has a device of its own, and pictures are copied to the panels.
+    pub apart: bool,
 }
 
 impl Screen {
     /// Wraps the device that eframe opened for its window. Uncaptured errors of wgpu are printed on standard error.
+    ///
+    /// A software driver draws one submission after the other, and compiles shaders in between. The frame gets another
+    /// device there, so that the panels need not wait for it.
     pub fn of(state: &RenderState) -> Self {
+        let info = state.adapter.get_info();
+        if is_software(&info)
+            && let Ok(gpu) = Gpu::open(&AdapterRequest { name: Some(info.name), ..AdapterRequest::from_env() })
+        {
+            return Self { gpu, renderer: None, apart: true };
+        }
         let gpu = Gpu::wrap(&state.adapter, &state.device, &state.queue);
         state.device.on_uncaptured_error(Arc::new(|error| program::note(format_args!("device: {error}"))));
         let lost = gpu.shared_errors();
         state
             .device
             .set_device_lost_callback(move |reason, message| lost.report_lost(format!("{reason:?}: {message}")));
-        Self { gpu, renderer: Some(state.renderer.clone()) }
+        Self { gpu, renderer: Some(state.renderer.clone()), apart: false }
     }
 
     /// Creates a screen from a device and an optional renderer of panels.
     pub fn new(gpu: &Gpu, renderer: Option<Arc<RwLock<Renderer>>>) -> Self {
-        Self { gpu: gpu.clone(), renderer }
+        Self { gpu: gpu.clone(), renderer, apart: false }
     }
 
     /// Registers a texture with egui, replacing `before`. Its texels are display-encoded.

@@ -3,6 +3,7 @@
 use super::format::bytes;
 use crate::drawing::{Drawing, Ink, Item, shortened, text_width};
 use crate::plan_data::{Pass, PlanData, Step};
+use std::ops::Range;
 
 /// Maximum number of characters of a name.
 const LETTERS: usize = 28;
@@ -45,46 +46,78 @@ fn sign(pass: &Pass, column: &Column) -> &'static str {
     }
 }
 
-/// Draws the names and step brackets of columns of a width from `x`; returns the bottom.
-pub(super) fn draw(plan: &PlanData, columns: &[Column], drawing: &mut Drawing, [x, y]: [f32; 2], width: f32) -> f32 {
-    let label = |column: &Column| {
-        let pass = &plan.form.passes[column.pass];
-        format!("{}{}", sign(pass, column), shortened(&pass.name, LETTERS))
-    };
-    let longest = columns.iter().map(|c| text_width(&label(c), SIZE)).fold(0.0, f32::max);
-    let base = y + longest * TURNED.to_radians().sin() + 8.0;
-    let bracket = base + 24.0;
-    for (index, column) in columns.iter().enumerate() {
+/// Returns one column per step, named after its first pass.
+pub(super) fn steps(plan: &PlanData) -> Vec<Column> {
+    let first = |step: &Step| step.passes.first().and_then(|name| plan.pass(name));
+    let column = |step: &Step| Some(Column { pass: first(step)?, step: Some(step.index), resolve: false });
+    plan.form.steps.iter().filter_map(column).collect()
+}
+
+/// Height of the brackets of steps.
+const BRACKET: f32 = 24.0;
+
+fn label(plan: &PlanData, column: &Column) -> String {
+    let pass = &plan.form.passes[column.pass];
+    format!("{}{}", sign(pass, column), shortened(&pass.name, LETTERS))
+}
+
+/// Returns the height of the names and step brackets of columns.
+pub(super) fn height(plan: &PlanData, columns: &[Column]) -> f32 {
+    let longest = columns.iter().map(|c| text_width(&label(plan, c), SIZE)).fold(0.0, f32::max);
+    longest * TURNED.to_radians().sin() + 8.0 + BRACKET
+}
+
+/// Draws the names and step brackets of some columns of a width, with the first column at `x`, ending at `bottom`.
+pub(super) fn draw(
+    plan: &PlanData,
+    columns: &[Column],
+    range: Range<usize>,
+    drawing: &mut Drawing,
+    [x, bottom]: [f32; 2],
+    width: f32,
+) {
+    let base = bottom - BRACKET;
+    // Names of narrow columns would lie over each other.
+    let stride = (SIZE * 1.2 / width).ceil().max(1.0) as usize;
+    for index in range.clone() {
+        let column = &columns[index];
         let pass = &plan.form.passes[column.pass];
         let left = x + width * index as f32;
         let ink = if column.step.is_some() { Ink::Text } else { Ink::Ghost };
-        drawing.slanted([left + width / 2.0, base - 6.0], SIZE, ink, TURNED, label(column));
+        if index % stride == 0 {
+            drawing.slanted([left + width / 2.0, base - 6.0], SIZE, ink, TURNED, label(plan, column));
+        }
         drawing.hit([left, base - 24.0, left + width, base], Item::Pass(column.pass), tip(pass));
     }
-    let mut first = 0;
-    while first < columns.len() {
+    let mut first = range.start;
+    while first > 0 && first < columns.len() && columns[first - 1].step == columns[first].step {
+        first -= 1;
+    }
+    while first < range.end {
         let step = columns[first].step;
         let count = columns[first..].iter().take_while(|c| c.step == step).count();
-        let bounds = [x + width * first as f32 + 1.0, base, x + width * (first + count) as f32 - 1.0, bracket - 4.0];
+        let bounds = [x + width * first as f32 + 1.0, base, x + width * (first + count) as f32 - 1.0, bottom - 4.0];
         let middle = [(bounds[0] + bounds[2]) / 2.0, (bounds[1] + bounds[3]) / 2.0];
         let center = crate::drawing::Align::Center;
+        let fits = |word: &str| text_width(word, 11.0) < bounds[2] - bounds[0];
         match step.map(|step| &plan.form.steps[step]) {
             Some(row) => {
                 // Passes under one bracket share a step.
                 drawing.rect(bounds, Ink::Step, if count > 1 { Ink::Text } else { Ink::Faint });
-                drawing.aligned(middle, 11.0, center, Ink::Text, row.index.to_string());
+                let number = row.index.to_string();
+                if fits(&number) {
+                    drawing.aligned(middle, 11.0, center, Ink::Text, number);
+                }
                 drawing.hit(bounds, Item::Step(row.index), step_tip(row));
             }
             None => {
                 drawing.ghost(bounds, Ink::Ghost);
-                let word = if text_width("culled", 11.0) < bounds[2] - bounds[0] { "culled" } else { "-" };
-                drawing.aligned(middle, 11.0, center, Ink::Ghost, word);
+                drawing.aligned(middle, 11.0, center, Ink::Ghost, if fits("culled") { "culled" } else { "-" });
                 drawing.hit(bounds, None, "culled passes: do not run");
             }
         }
         first += count;
     }
-    bracket
 }
 
 /// Returns the tooltip of a pass.

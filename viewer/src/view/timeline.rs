@@ -1,37 +1,53 @@
 //! Timeline of resources over passes: lifetimes as bars, accesses, loads and stores.
 
 use super::format::{bytes, title};
-use super::heads::{self, Column};
+use super::heads;
+use super::table::{Kind, Table};
 use crate::drawing::{Align, Drawing, Ink, Item, letters_in, shortened, text_width};
-use crate::plan_data::{Attachment, PlanData, Resource};
+use crate::plan_data::{PlanData, Resource};
 use crate::trace_data::{TraceData, quartiles};
+use std::ops::Range;
 
 /// Height of a row.
-const ROW: f32 = 22.0;
+pub const ROW: f32 = 22.0;
 /// Width of a pass.
-const COLUMN: f32 = 52.0;
+pub const COLUMN: f32 = 52.0;
 /// Maximum width of the names.
 const NAMES: f32 = 330.0;
 /// Font size.
 const SIZE: f32 = 12.0;
+/// Minimum height of a row with text, and minimum width of a cell with letters and marks.
+const MIN_TEXT: f32 = 11.0;
+const MIN_CELL: f32 = 40.0;
 
 /// Draws the matrix, with step times if a trace of the frame is open.
 pub fn drawing(plan: &PlanData, trace: Option<&TraceData>) -> Drawing {
     let mut drawing = Drawing::default();
     let y = title(&mut drawing, "timeline", plan);
     let y = legend(&mut drawing, y);
-    let columns = heads::columns(plan);
-    let wide = |r: &Resource| text_width(&r.name, SIZE) + text_width(&place_of(r), 11.0) + 30.0;
-    let names = plan.form.resources.iter().map(wide).fold(150.0, f32::max).min(NAMES);
-    let mut y = heads::draw(plan, &columns, &mut drawing, [names, y], COLUMN);
+    let table = Table::new(plan, Kind::Timeline);
+    let columns = &table.columns;
+    let names = names_width(plan);
+    let mut y = y + heads::height(plan, columns);
+    heads::draw(plan, columns, 0..columns.len(), &mut drawing, [names, y], COLUMN);
     if let Some(trace) = trace {
-        y = times(plan, &columns, trace, &mut drawing, [names, y]);
+        if let Some(other) = trace.mismatch(plan) {
+            drawing.text([0.0, y + 8.0], SIZE, Ink::Worse, other);
+            y += ROW;
+        }
+        times(plan, &table, 0..columns.len(), trace, &mut drawing, [names, y], COLUMN);
+        for (line, side) in SIDES.into_iter().enumerate() {
+            let middle = y + ROW * (line as f32 + 0.5);
+            drawing.aligned([names - 8.0, middle], SIZE, Align::Right, Ink::Text, format!("{side}, median"));
+        }
+        y += TIMES + 4.0;
     }
     let right = names + COLUMN * columns.len() as f32;
     let top = y;
     for index in 0..plan.form.resources.len() {
         drawing.line(vec![[0.0, y], [right, y]], Ink::Grid, 1.0);
-        row(plan, &columns, index, &mut drawing, [names, y]);
+        name(plan, table.kind, index, &mut drawing, [0.0, y, names, y + ROW]);
+        row(plan, &table, index, 0..columns.len(), &mut drawing, [names, y], [COLUMN, ROW]);
         y += ROW;
     }
     drawing.line(vec![[0.0, y], [right, y]], Ink::Grid, 1.0);
@@ -41,6 +57,19 @@ pub fn drawing(plan: &PlanData, trace: Option<&TraceData>) -> Drawing {
     }
     drawing
 }
+
+/// Returns the width of the names of resources.
+pub fn names_width(plan: &PlanData) -> f32 {
+    let wide = |r: &Resource| text_width(&r.name, SIZE) + text_width(&place_of(r), 11.0) + 30.0;
+    plan.form.resources.iter().map(wide).fold(150.0, f32::max).min(NAMES)
+}
+
+/// Legend as text.
+pub const LEGEND: &str = "R read, W write, M modify; + merged into the step, » inlined\n\
+    At the begin of a step: orange arrow load, filled box clear, empty box don't care\n\
+    At its end: blue arrow store, double arrow multisample resolve, cross discard, dot none\n\
+    Blue bar: shared memory; green: no memory; pink: outlives the frame\n\
+    Narrow cells show reads in orange and writes in blue";
 
 /// Draws the legend.
 fn legend(drawing: &mut Drawing, y: f32) -> f32 {
@@ -70,34 +99,45 @@ fn legend(drawing: &mut Drawing, y: f32) -> f32 {
     y + 16.0
 }
 
-/// Draws medians and quartiles of step times on CPU and GPU.
-fn times(plan: &PlanData, columns: &[Column], trace: &TraceData, drawing: &mut Drawing, [names, y]: [f32; 2]) -> f32 {
-    let mut y = y;
-    if let Some(other) = trace.mismatch(plan) {
-        drawing.text([0.0, y + 8.0], SIZE, Ink::Worse, other);
-        y += ROW;
-    }
+/// Devices whose times are shown.
+pub const SIDES: [&str; 2] = ["CPU ms", "GPU ms"];
+/// Height of the times.
+pub const TIMES: f32 = 2.0 * ROW;
+
+/// Draws medians and quartiles of step times on CPU and GPU for some columns of a width.
+pub fn times(
+    plan: &PlanData,
+    table: &Table,
+    range: Range<usize>,
+    trace: &TraceData,
+    drawing: &mut Drawing,
+    [x, y]: [f32; 2],
+    width: f32,
+) {
+    let columns = &table.columns;
     let traced = trace.steps_of(plan);
-    for (line, side) in ["CPU ms", "GPU ms"].into_iter().enumerate() {
+    for (line, side) in SIDES.into_iter().enumerate() {
         let middle = y + ROW * (line as f32 + 0.5);
-        drawing.aligned([names - 8.0, middle], SIZE, Align::Right, Ink::Text, format!("{side}, median"));
-        for (index, column) in columns.iter().enumerate() {
+        for index in range.clone() {
+            let column = &columns[index];
             let first = index == 0 || columns[index - 1].step != column.step;
             let Some(step) = column.step.filter(|_| first).map(|s| &plan.form.steps[s]) else { continue };
             let Some(times) = traced[step.index] else { continue };
             let times = if line == 0 { &times.cpu_ms } else { &times.gpu_ms };
             let Some([low, median, high]) = quartiles(times) else { continue };
-            let x = names + COLUMN * index as f32;
-            drawing.text([x + 2.0, middle], 11.0, Ink::Text, format!("{median:.2}"));
+            let left = x + width * index as f32;
+            let words = format!("{median:.2}");
+            if text_width(&words, 11.0) < width {
+                drawing.text([left + 2.0, middle], 11.0, Ink::Text, words);
+            }
             let tip = format!(
                 "step {}, {side} of {} frames: median {median:.3}, quartiles {low:.3} and {high:.3}",
                 step.index,
                 times.len()
             );
-            drawing.hit([x, middle - ROW / 2.0, x + COLUMN, middle + ROW / 2.0], Item::Step(step.index), tip);
+            drawing.hit([left, middle - ROW / 2.0, left + width, middle + ROW / 2.0], Item::Step(step.index), tip);
         }
     }
-    y + 2.0 * ROW + 4.0
 }
 
 /// Returns the color of a placement.
@@ -132,95 +172,95 @@ fn place_of(resource: &Resource) -> String {
     }
 }
 
-fn row(plan: &PlanData, columns: &[Column], index: usize, drawing: &mut Drawing, [names, y]: [f32; 2]) {
+/// Draws the name of a resource with its placement, or in the memory table with its offset and size.
+pub fn name(plan: &PlanData, kind: Kind, index: usize, drawing: &mut Drawing, bounds: [f32; 4]) {
+    let [left, top, right, bottom] = bounds;
     let resource = &plan.form.resources[index];
-    let middle = y + ROW / 2.0;
-    let place = place_of(resource);
-    let unused = resource.first_step.is_none();
-    let ink = if unused { Ink::Ghost } else { Ink::Text };
-    let width = names - 24.0 - text_width(&place, 11.0);
-    let name = shortened(&resource.name, letters_in(width, SIZE));
-    drawing.text([0.0, middle], SIZE, ink, name);
-    drawing.aligned([names - 8.0, middle], 11.0, Align::Right, Ink::Faint, place);
-    drawing.hit([0.0, y, names, y + ROW], Item::Resource(index), tip(resource));
-    let x_of = |column: usize| names + COLUMN * column as f32;
-    let within = |column: &Column| match (column.step, resource.first_step, resource.last_step) {
-        (Some(step), Some(first), Some(last)) => first <= step && step <= last,
-        _ => false,
+    let middle = (top + bottom) / 2.0;
+    drawing.hit(bounds, Item::Resource(index), tip(resource));
+    if bottom - top < MIN_TEXT {
+        return;
+    }
+    let size = SIZE.min(0.72 * (bottom - top));
+    let place = match (kind, resource.offset) {
+        (Kind::Memory, Some(offset)) => format!("{} at {}", bytes(resource.bytes), bytes(offset)),
+        _ => place_of(resource),
     };
-    let alive: Vec<usize> = (0..columns.len()).filter(|c| within(&columns[*c])).collect();
-    if let (Some(first), Some(last)) = (alive.first(), alive.last()) {
-        let bounds = [x_of(*first) + 2.0, y + 3.0, x_of(last + 1) - 2.0, y + ROW - 3.0];
+    let note = size.min(11.0);
+    let ink = if resource.first_step.is_none() { Ink::Ghost } else { Ink::Text };
+    let letters = letters_in(right - left - 24.0 - text_width(&place, note), size);
+    drawing.text([left, middle], size, ink, shortened(&resource.name, letters));
+    drawing.aligned([right - 8.0, middle], note, Align::Right, Ink::Faint, place);
+}
+
+/// Draws lifetime and cells of a resource in some columns. `x` is the left end of the first column of the table.
+pub fn row(
+    plan: &PlanData,
+    table: &Table,
+    index: usize,
+    range: Range<usize>,
+    drawing: &mut Drawing,
+    [x, y]: [f32; 2],
+    [width, height]: [f32; 2],
+) {
+    let resource = &plan.form.resources[index];
+    let (middle, pad) = (y + height / 2.0, 0.14 * height);
+    let x_of = |column: usize| x + width * column as f32;
+    if let Some([first, last]) = table.spans[index].filter(|[first, last]| *first < range.end && *last >= range.start) {
+        let inset = 2.0f32.min(0.1 * width);
+        let bounds = [x_of(first) + inset, y + pad, x_of(last + 1) - inset, y + height - pad];
         drawing.rect(bounds, place_ink(resource), None);
-        drawing.hit([x_of(*first), y, x_of(last + 1), y + ROW], Item::Resource(index), tip(resource));
+        drawing.hit([x_of(first), y, x_of(last + 1), y + height], Item::Resource(index), tip(resource));
     }
-    for (place, column) in columns.iter().enumerate() {
-        let [left, right] = [x_of(place), x_of(place + 1)];
-        let pass = &plan.form.passes[column.pass];
-        let uses: Vec<_> = pass.accesses.iter().filter(|a| a.resource == resource.name).collect();
-        if !uses.is_empty() && !column.resolve {
-            let read = uses.iter().any(|a| a.mode == "read");
-            let modify = uses.iter().any(|a| a.mode == "modify");
-            let write = uses.iter().any(|a| a.writes() && a.mode != "modify");
-            let letters: String =
-                [(read, 'R'), (modify, 'M'), (write, 'W')].iter().filter(|(is, _)| *is).map(|(_, c)| *c).collect();
-            let ink = if column.step.is_some() { Ink::Text } else { Ink::Ghost };
-            drawing.aligned([(left + right) / 2.0, middle], SIZE, Align::Center, ink, letters);
-        }
-        let Some(step) = column.step.map(|s| &plan.form.steps[s]) else {
-            if !uses.is_empty() {
-                let words: Vec<_> = uses.iter().map(|a| format!("{} {}", a.mode, a.kind)).collect();
-                let tip = format!("{} (culled) would {} {}", pass.name, words.join(", "), resource.name);
-                drawing.hit([left, y, right, y + ROW], Item::Pass(column.pass), tip);
+    let is_wide = width >= MIN_CELL && height >= MIN_TEXT;
+    for (column, cell) in table.cells[index].range(range) {
+        let [left, right] = [x_of(*column), x_of(column + 1)];
+        let runs = table.step(*column).is_some();
+        let [read, modify, write] = cell.accesses;
+        let letters: String =
+            [(read, 'R'), (modify, 'M'), (write, 'W')].iter().filter(|(is, _)| *is).map(|(_, c)| *c).collect();
+        let ink = if runs { Ink::Text } else { Ink::Ghost };
+        if is_wide {
+            let size = SIZE.min(0.72 * height);
+            drawing.aligned([(left + right) / 2.0, middle], size, Align::Center, ink, letters);
+            if let Some(load) = cell.load {
+                load_mark(drawing, load, left + 4.0, middle);
             }
-            continue;
-        };
-        let attached: Vec<&Attachment> = plan.attached(step, &resource.name).collect();
-        let first = place == 0 || columns[place - 1].step != column.step;
-        let last = columns.get(place + 1).is_none_or(|next| next.step != column.step);
-        if let (true, Some(attachment)) = (first, strongest(&attached, |a| load_rank(&a.load)))
-            && !attachment.role.starts_with("resolve")
-        {
-            load_mark(drawing, &attachment.load, left + 4.0, middle);
+            if let Some(store) = cell.store {
+                store_mark(drawing, store, right - 8.0, middle);
+            }
+        } else if !letters.is_empty() {
+            let half = 0.3 * width.min(height);
+            let center = (left + right) / 2.0;
+            let ink = match (runs, modify || write) {
+                (false, _) => Ink::Ghost,
+                (_, true) => Ink::Store,
+                _ => Ink::Load,
+            };
+            drawing.rect([center - half, middle - half, center + half, middle + half], ink, None);
         }
-        if let (true, Some(attachment)) = (last, strongest(&attached, |a| store_rank(&a.store))) {
-            let resolve = attachment.role.starts_with("resolve") && attachment.store == "store";
-            store_mark(drawing, if resolve { "multisample" } else { &attachment.store }, right - 8.0, middle);
-        }
-        if !uses.is_empty() || !attached.is_empty() {
-            let uses = uses.iter().map(|a| {
-                let part = a.part.as_ref().map(|part| format!(", {part}")).unwrap_or_default();
-                format!("{} {}{part}", a.mode, a.kind)
-            });
-            let ops = attached
-                .iter()
-                .map(|a| format!("{}: {}, {}\n  {}\n  {}", a.role, a.load, a.store, a.load_reason, a.store_reason));
-            let lines: Vec<_> = uses.chain(ops).collect();
-            let tip = format!("{} in {}\n{}", resource.name, pass.name, lines.join("\n"));
-            drawing.hit([left, y, right, y + ROW], Item::Resource(index), tip);
-        }
+        let item = if runs { Item::Resource(index) } else { Item::Pass(table.columns[*column].pass) };
+        drawing.hit([left, y, right, y + height], item, cell_tip(plan, table, index, *column));
     }
 }
 
-/// Returns the attachment with the highest rank among several levels or layers of a resource.
-fn strongest<'a>(attached: &[&'a Attachment], rank: impl Fn(&Attachment) -> u8) -> Option<&'a Attachment> {
-    attached.iter().copied().max_by_key(|a| rank(a))
-}
-
-fn load_rank(load: &str) -> u8 {
-    match load {
-        "load" => 2,
-        "clear" => 1,
-        _ => 0,
-    }
-}
-
-fn store_rank(store: &str) -> u8 {
-    match store {
-        "store" => 2,
-        "discard" => 1,
-        _ => 0,
-    }
+/// Returns the tooltip of a cell: accesses, and loads and stores with their reasons.
+fn cell_tip(plan: &PlanData, table: &Table, index: usize, column: usize) -> String {
+    let name = &plan.form.resources[index].name;
+    let column = &table.columns[column];
+    let pass = &plan.form.passes[column.pass];
+    let uses = pass.accesses.iter().filter(|a| a.resource == *name).map(|a| {
+        let part = a.part.as_ref().map(|part| format!(", {part}")).unwrap_or_default();
+        format!("{} {}{part}", a.mode, a.kind)
+    });
+    let Some(step) = column.step.map(|step| &plan.form.steps[step]) else {
+        return format!("{} (culled) would {} {name}", pass.name, uses.collect::<Vec<_>>().join(", "));
+    };
+    let ops = plan
+        .attached(step, name)
+        .map(|a| format!("{}: {}, {}\n  {}\n  {}", a.role, a.load, a.store, a.load_reason, a.store_reason));
+    let lines: Vec<_> = uses.chain(ops).collect();
+    format!("{name} in {}\n{}", pass.name, lines.join("\n"))
 }
 
 /// Draws the load operation: an arrow, a filled box, or an empty box.

@@ -2,6 +2,7 @@
 
 mod changes;
 mod editing;
+mod grids;
 mod live;
 mod live_pictures;
 mod panels;
@@ -9,6 +10,7 @@ mod pictures;
 mod program;
 mod saved;
 mod sizes;
+mod textures;
 mod views;
 mod window;
 

@@ -16,8 +16,11 @@ fn shown(name: &str) -> Harness<'static, Viewer> {
     of(session(&case(name)))
 }
 
-fn of(session: Session) -> Harness<'static, Viewer> {
-    let viewer = Viewer::new(session);
+pub fn of(session: Session) -> Harness<'static, Viewer> {
+    of_viewer(Viewer::new(session))
+}
+
+pub fn of_viewer(viewer: Viewer) -> Harness<'static, Viewer> {
     let mut harness = Harness::builder()
         .with_size([1280.0, 720.0])
         .with_max_steps(16)

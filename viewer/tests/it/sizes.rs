@@ -27,7 +27,7 @@ fn panes() -> impl Iterator<Item = Pane> {
 }
 
 /// Shows one frame of the viewer at a size, with some events.
-fn frame(ctx: &Context, viewer: &mut Viewer, size: [f32; 2], events: Vec<Event>) {
+pub fn frame(ctx: &Context, viewer: &mut Viewer, size: [f32; 2], events: Vec<Event>) {
     let input = RawInput {
         screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(size[0], size[1]))),
         events,

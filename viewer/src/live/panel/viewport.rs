@@ -26,8 +26,12 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         live.again();
     }
     live.draw(size_px, session);
-    match live.picture() {
-        Some((id, _)) => {
+    let copied = live
+        .copied_picture()
+        .map(|copied| super::texture(ui.ctx(), "viewport", copied.made, copied.size_px, &copied.rgba8).id());
+    let own = live.picture().map(|(id, _)| id).filter(|_| !live.has_own_device());
+    match copied.or(own) {
+        Some(id) => {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             ui.painter().image(id, rect, whole, Color32::WHITE);
             // Drawn over the picture, because a growing text line would change its size and thereby the measurement.
@@ -36,8 +40,10 @@ pub fn viewport(ui: &mut Ui, live: &mut Live, session: &mut Session) {
             let words = ui.painter().layout(statistics(live), font, Color32::WHITE, width);
             let at = rect.left_bottom() + vec2(6.0, -6.0 - words.size().y);
             let behind = Rect::from_min_size(at, words.size()).expand(3.0);
-            ui.painter().rect_filled(behind, 2.0, Color32::from_black_alpha(170));
-            ui.painter().galley(at, words, Color32::WHITE);
+            if !words.is_empty() {
+                ui.painter().rect_filled(behind, 2.0, Color32::from_black_alpha(170));
+                ui.painter().galley(at, words, Color32::WHITE);
+            }
         }
         None => {
             let text = if live.doing().is_some() { "Loading" } else { "No scene: drop a glTF file here" };

@@ -3,7 +3,7 @@
 use super::read::Found;
 use framegraph::Numeric;
 
-/// What a picture of a texture shows.
+/// Quantity that a picture of a texture shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shown {
     /// Values of the channels.
@@ -18,7 +18,7 @@ pub enum Shown {
 /// Mapping from texel values to displayed colors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
-    /// What is shown.
+    /// Displayed quantity.
     pub shown: Shown,
     /// Displayed channels: red, green, blue, alpha. A single one is shown as gray.
     pub channels: [bool; 4],
