@@ -25,7 +25,11 @@ fn main() -> std::process::ExitCode {
             ));
             line(format_args!("  {} loads, {} stores", report.counts.unresolves, report.counts.resolves));
             line(format_args!("  largest difference from the reference: {} of 255", report.difference));
-            if report.difference > 1 { Err("the picture is wrong".into()) } else { Ok(()) }
+            if report.difference > 1 || report.counts != report.planned {
+                Err("the picture is wrong".into())
+            } else {
+                Ok(())
+            }
         })
     });
     program::ended("vulkan_post", drawn.map_err(|error: Box<dyn std::error::Error>| error.to_string()))

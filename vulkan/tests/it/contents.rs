@@ -56,7 +56,13 @@ fn random_graphs_leave_the_contents_of_the_simulation() -> TestResult {
                     executed += u64::from(number == 0);
                     let messages = device.messages();
                     let place = format!("seed {seed}, options {number}");
-                    assert!(messages.is_empty(), "{place}: {}", messages[0]);
+                    assert!(
+                        messages.is_empty(),
+                        "{place}: {}\n{}{:#?}",
+                        messages[0],
+                        framegraph::dump::text(&verdict.plan),
+                        verdict.plan.barriers()
+                    );
                     let text = || framegraph::dump::text(&verdict.plan);
                     assert!(verdict.differences.is_empty(), "{place}:\n{}\n{}", verdict.differences.join("\n"), text());
                     total.add(&verdict);
