@@ -85,6 +85,10 @@ pub struct Caps {
     pub compute_queue: bool,
     /// The device has a separate queue for copies.
     pub copy_queue: bool,
+    /// Size in bytes of on-chip memory that keeps its contents from step to step (`VK_QCOM_tile_memory_heap`); 0 for
+    /// none. [`Plan::tile_heap`](crate::Plan::tile_heap) chooses the textures to keep there.
+    #[cfg_attr(feature = "files", serde(default))]
+    pub tile_heap_bytes: u64,
 }
 
 impl Caps {
@@ -121,6 +125,7 @@ impl Caps {
             explicit_barriers: true,
             compute_queue: true,
             copy_queue: true,
+            tile_heap_bytes: 0,
         }
     }
 

@@ -60,6 +60,7 @@
 //! | [`compile`](mod@compile) | the compiler and its errors |
 //! | [`plan`], [`barrier`], [`counts`] | the result, its barriers and its cost |
 //! | [`decision`] | the log: what was decided, and why |
+//! | [`tile_heap`] | textures kept in on-chip memory from step to step |
 //! | [`diff`](mod@diff), [`dump`] | comparing plans; text, JSON, DOT, Mermaid and SVG output |
 //! | `file` | graphs and devices as RON files (feature `files`) |
 //! | `testing` | an independent plan checker and random graphs (feature `testing`) |
@@ -106,6 +107,7 @@ pub mod resource;
 pub mod sanitize;
 #[cfg(feature = "testing")]
 pub mod testing;
+pub mod tile_heap;
 mod warning;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
@@ -133,4 +135,5 @@ pub use resolve::{ResolveMode, ResolveModes};
 pub use resource::{BufferDesc, BufferSize, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};
 #[cfg(feature = "testing")]
 pub use testing::check::{self, check};
+pub use tile_heap::{Kept, TileHeap};
 pub use warning::Warning;

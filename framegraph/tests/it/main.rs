@@ -22,5 +22,6 @@ mod padding;
 mod properties;
 mod sharing;
 mod support;
+mod tile_heap;
 mod totals;
 mod viewed;
