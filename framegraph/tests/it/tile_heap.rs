@@ -29,9 +29,8 @@ fn external(plan: &Plan, id: ResourceId) -> u64 {
     for step in plan.step_ids() {
         for row in plan.attachments_of(step).iter().filter(|row| row.resource == id) {
             let each = texels(row.mip.into(), row.layers.into());
-            let count = |load: LoadOp, store: StoreOp| {
-                u64::from(load == LoadOp::Load) + u64::from(store == StoreOp::Store)
-            };
+            let count =
+                |load: LoadOp, store: StoreOp| u64::from(load == LoadOp::Load) + u64::from(store == StoreOp::Store);
             if desc.format.planes() == 1 {
                 sum += each * u64::from(desc.format.block_bytes()) * count(row.load, row.store);
             } else {
@@ -102,9 +101,7 @@ fn best(plan: &Plan, bytes: u64) -> u64 {
     };
     let all: Vec<ResourceId> = plan.graph().resource_ids().filter(fits).collect();
     assert!(all.len() <= 10, "{}", all.len());
-    let size = |id: ResourceId| {
-        plan.graph().resources()[id.index()].desc.bytes(plan.frame()).next_multiple_of(CELL)
-    };
+    let size = |id: ResourceId| plan.graph().resources()[id.index()].desc.bytes(plan.frame()).next_multiple_of(CELL);
     let live = |set: u32| {
         let members = || (0..all.len()).filter(move |at| set >> at & 1 == 1).map(|at| all[at]);
         plan.step_ids().all(|step| {
@@ -165,7 +162,9 @@ fn random_plans_keep_textures_that_fit_and_save_what_they_state() {
             exact += usize::from(best == heap.saved_bytes);
         }
     }
-    println!("{kept} textures kept, {optimal} of 400 choices proved optimal, {exact} equal the best subset by live bytes");
+    println!(
+        "{kept} textures kept, {optimal} of 400 choices proved optimal, {exact} equal the best subset by live bytes"
+    );
     assert!(kept > 200 && optimal > 300, "{kept} {optimal}");
 }
 
