@@ -13,7 +13,7 @@
 //! shaders, counting each accessed part once for each pass. A branch-and-bound search over subsets packs each of them
 //! with [`crate::pack`]. The result has the packer's certificate, and an upper bound of the savings of any subset.
 
-use crate::access::{Access, AccessKind};
+use crate::access::{Access, AccessKind, Range};
 use crate::format::Aspect;
 use crate::graph::PassKind;
 use crate::id::{ResourceId, StepId};
@@ -200,7 +200,11 @@ fn candidate(plan: &Plan, id: ResourceId) -> Option<Candidate> {
 fn traffic(plan: &Plan, step: StepId, id: ResourceId) -> u64 {
     let own = plan.attachments_of(step).iter().filter(|a| a.resource == id);
     let moved = |(loaded, stored): (u64, u64)| loaded.saturating_add(stored);
-    let attached = own.map(|a| moved(plan.attachment_bytes(a, plan.frame()))).fold(0, u64::saturating_add);
+    let resolved = plan.full_screen_resolves(step).filter(|(samples, _)| samples.resource == id);
+    // Depth is resolved without stencil.
+    let depth = |access: &Access| Access { range: Range { aspect: Aspect::Depth, ..access.range }, ..*access };
+    let resolved = resolved.map(|(samples, _)| accessed_bytes(plan, &depth(samples))).fold(0, u64::saturating_add);
+    let attached = own.map(|a| moved(plan.attachment_bytes(a, plan.frame()))).fold(resolved, u64::saturating_add);
     let members = plan.passes_of(step).iter().filter(|member| !matches!(member.join, Join::Inlined | Join::Resolve));
     let read = members.flat_map(|member| {
         let is_raster = plan.graph().passes()[member.pass.index()].kind == PassKind::Raster;

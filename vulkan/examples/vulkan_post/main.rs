@@ -1,5 +1,5 @@
-//! Draws a small frame on Vulkan and prints what it costs: color and post-processing in two subpasses of one render
-//! pass, ambient occlusion on a second queue, at one and at four samples.
+//! Draws a small frame on Vulkan at one and at four samples, and prints its cost. Color and post-processing are two
+//! subpasses of one render pass. Ambient occlusion runs on a second queue.
 //!
 //! `cargo run -p framegraph-vulkan --example vulkan_post --features testing`
 

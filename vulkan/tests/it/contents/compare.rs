@@ -142,7 +142,7 @@ fn entry(graph: &Graph, id: ResourceId) -> Contents {
     }
 }
 
-/// What a frame left.
+/// Results of a frame.
 struct Found<'f> {
     number: u32,
     kit: &'f mut Kit,
