@@ -131,6 +131,10 @@ pub struct Caps {
     pub compute_queue: bool,
     /// The device has a separate queue for copies.
     pub copy_queue: bool,
+    /// Size in bytes of on-chip memory that keeps its contents from step to step (`VK_QCOM_tile_memory_heap`); 0 for
+    /// none. [`Plan::tile_heap`](crate::Plan::tile_heap) chooses the textures to keep there.
+    #[cfg_attr(feature = "files", serde(default))]
+    pub tile_heap_bytes: u64,
 }
 
 impl Caps {

@@ -60,6 +60,7 @@
 //! | [`compile`](mod@compile) | the compiler and its errors |
 //! | [`plan`], [`barrier`], [`counts`] | the result, its barriers and its cost |
 //! | [`decision`] | the log: what was decided, and why |
+//! | [`tile_heap`] | textures kept in on-chip memory from step to step |
 //! | [`diff`](mod@diff), [`dump`] | comparing plans; text, JSON, DOT, Mermaid and SVG output |
 //! | `file` | graphs and devices as RON files (feature `files`) |
 //! | [`pack`] | the memory packer, a crate of its own |
@@ -120,6 +121,7 @@ pub mod resource;
 pub mod sanitize;
 mod spans;
 pub mod suggest;
+pub mod tile_heap;
 mod warning;
 
 pub use access::{Access, AccessKind, ByteRange, ClearValue, Intent, Mode, Range, Usage};
@@ -145,4 +147,5 @@ pub use pass_builder::{MAX_COLORS, PassBuilder};
 pub use plan::{Attachment, Join, LoadOp, Memory, Placement, Plan, Planned, Role, Slot, Step, StepPass, StoreOp};
 pub use resolve::{ResolveMode, ResolveModes};
 pub use resource::{BufferDesc, BufferSize, Desc, Dimension, Entry, Exit, Extent, Kind, Resource, TextureDesc};
+pub use tile_heap::{Kept, TileHeap};
 pub use warning::Warning;

@@ -12,7 +12,8 @@ use framegraph::{Access, Mode, Plan, ResourceId, StepId};
 
 /// Returns `true` if the executor clears the resource with a command of its own in a frame of the plan.
 pub(crate) fn is_cleared(plan: &Plan, id: ResourceId) -> bool {
-    plan.graph().accesses().iter().any(|access| access.resource == id && clears(access))
+    let mut accesses = plan.running().flat_map(|member| plan.graph().accesses_of(member.pass));
+    accesses.any(|access| access.resource == id && clears(access))
 }
 
 fn clears(access: &Access) -> bool {

@@ -58,7 +58,7 @@ impl Gpu {
     /// # Panics
     /// Panics if `schedule` belongs to another plan.
     pub fn share_memory(&self, plan: &Plan, schedule: &Schedule) -> Result<SharedMemory, Error> {
-        let mut alignment = plan.caps().texture_alignment_bytes;
+        let mut alignment = 1;
         let mut sizes: Vec<u64> = plan.resources().iter().map(|row| row.bytes).collect();
         let mut families: Vec<u32> = self.shared.queues.iter().map(|queue| queue.family).collect();
         families.dedup();

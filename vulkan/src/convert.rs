@@ -94,6 +94,8 @@ pub(crate) fn plane(format: Format, number: u32) -> vk::ImageAspectFlags {
 pub(crate) fn layout(state: State, format: Format, number: u32) -> vk::ImageLayout {
     let two = format.planes() > 1;
     match state {
+        // An owner's declared state does not know the format.
+        State::ColorAttachment if format.is_depth_stencil() => layout(State::DepthAttachment, format, number),
         State::Undefined | State::Entry => vk::ImageLayout::UNDEFINED,
         State::ColorAttachment => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         State::DepthAttachment if two && number == 0 => vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL,

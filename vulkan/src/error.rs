@@ -7,7 +7,7 @@ use std::fmt;
 pub enum Error {
     /// A Vulkan call failed.
     Vulkan {
-        /// What the call was for.
+        /// Purpose of the call.
         of: &'static str,
         /// Result code of the call.
         result: vk::Result,

@@ -24,6 +24,9 @@ pub struct ExecutorOptions {
     pub multiview: bool,
     /// Writes timestamps around each step ([`Executor::step_times_us`]).
     pub timing: bool,
+    /// States the execution dependency of each image barrier also without the image. It changes nothing for the GPU.
+    /// Synchronization validation of 2023 needs it to see chains of barriers of different resources in one heap.
+    pub explicit_chains: bool,
 }
 
 /// Number of frames that the CPU records ahead of the GPU.
@@ -79,7 +82,7 @@ impl Executor {
             slots: Default::default(),
             frame: 0,
             prepared: None,
-            layouts: Layouts::default(),
+            layouts: Layouts::new(options.explicit_chains),
             views: Views::default(),
             executed: Counts::default(),
             barriers: 0,

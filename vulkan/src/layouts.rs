@@ -8,27 +8,34 @@ use framegraph::{Barrier, Dimension, Format, Plan, ResourceId, State, TextureDes
 use std::collections::BTreeMap;
 
 /// Layout of each subresource of each image, as recorded so far.
-#[derive(Default)]
-pub(crate) struct Layouts(BTreeMap<(Thing, u32), vk::ImageLayout>);
+pub(crate) struct Layouts {
+    rows: BTreeMap<(Thing, u32), vk::ImageLayout>,
+    /// See [`ExecutorOptions::explicit_chains`](crate::ExecutorOptions::explicit_chains).
+    explicit_chains: bool,
+}
 
 impl Layouts {
+    pub(crate) fn new(explicit_chains: bool) -> Self {
+        Self { rows: BTreeMap::new(), explicit_chains }
+    }
+
     /// Returns the layout of a part.
     pub(crate) fn get(&self, thing: Thing, part: u32) -> vk::ImageLayout {
-        self.0.get(&(thing, part)).copied().unwrap_or(vk::ImageLayout::UNDEFINED)
+        self.rows.get(&(thing, part)).copied().unwrap_or(vk::ImageLayout::UNDEFINED)
     }
 
     pub(crate) fn set(&mut self, thing: Thing, part: u32, layout: vk::ImageLayout) {
-        self.0.insert((thing, part), layout);
+        self.rows.insert((thing, part), layout);
     }
 
     /// Forgets everything, since the images are destroyed.
     pub(crate) fn clear(&mut self) {
-        self.0.clear();
+        self.rows.clear();
     }
 
     /// Keeps the layouts of these images only.
     pub(crate) fn retain(&mut self, kept: &[Thing]) {
-        self.0.retain(|(thing, _), _| kept.contains(thing));
+        self.rows.retain(|(thing, _), _| kept.contains(thing));
     }
 
     /// Appends a barrier of the plan. With `behind`, the wait before it covers its source.
@@ -51,6 +58,9 @@ impl Layouts {
             scope.from = to;
         } else {
             scope.from_access = accesses(row.from_stages, from_state)[1];
+        }
+        if self.explicit_chains {
+            pending.memory.push(Scope { from: scope.from, to: scope.to, ..Scope::default() });
         }
         if !row.aliases.is_none() && !behind {
             // Writes of other resources in this memory.

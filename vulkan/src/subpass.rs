@@ -180,8 +180,8 @@ fn shows(attachment: &Attachment, access: &Access) -> bool {
         && attachment.layer == access.range.layer
 }
 
-/// Returns `true` if a same-pixel read of the pass at `at` stays in the tile: its pass joined because of same-pixel
-/// reads, and earlier passes of the step attached every plane that it reads.
+/// Returns `true` if a same-pixel read of the pass at `at` stays in the tile. The pass must have joined because of
+/// same-pixel reads, and earlier passes of the step must have attached every plane that it reads.
 pub(crate) fn is_in_tile(plan: &Plan, members: &[StepPass], at: usize, access: &Access) -> bool {
     let graph = plan.graph();
     let format = |id: ResourceId| plan.format(id).unwrap_or(Format::R8Unorm);

@@ -7,6 +7,7 @@ mod imports;
 mod kit;
 mod memory;
 mod mock;
+mod raster;
 mod spirv;
 
 pub use device::{DeviceRequest, OpenError, TestDevice};

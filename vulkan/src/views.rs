@@ -32,7 +32,7 @@ pub struct ViewShape {
     pub kind: Option<vk::ImageViewType>,
 }
 
-/// Views of an executor. Those of imports live for one frame, because the engine can destroy the images.
+/// Views of an executor. Views of imports live for one frame, because the engine can destroy the images.
 #[derive(Default)]
 pub(crate) struct Views {
     kept: BTreeMap<ViewKey, vk::ImageView>,

@@ -61,6 +61,7 @@ impl Caps {
             explicit_barriers: true,
             compute_queue: true,
             copy_queue: true,
+            tile_heap_bytes: 0,
         }
     }
 
@@ -80,6 +81,7 @@ impl Caps {
             tile_bytes_per_pixel: 128,
             texture_alignment_bytes: 4096,
             copy_queue: false,
+            tile_heap_bytes: 0,
             ..Self::desktop()
         }
     }
@@ -184,6 +186,7 @@ impl Caps {
             explicit_barriers: false,
             compute_queue: false,
             copy_queue: false,
+            tile_heap_bytes: 0,
             ..Self::desktop()
         }
     }

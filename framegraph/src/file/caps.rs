@@ -51,7 +51,7 @@ caps_form! {
     tile_bytes_per_pixel: u32, sample_read_only_depth: bool, separate_planes: bool, color_resolves: ResolveModes,
     depth_resolves: ResolveModes, placed: bool, placed_histories: bool, separate_heaps: bool,
     texture_alignment_bytes: u64, buffer_alignment_bytes: u64, explicit_barriers: bool,
-    compute_queue: bool, copy_queue: bool,
+    compute_queue: bool, copy_queue: bool, tile_heap_bytes: u64,
 }
 
 /// Reads a device from `text`; `path` is used in errors. Missing fields have the values of the preset named by `like`,

@@ -23,5 +23,6 @@ mod padding;
 mod properties;
 mod sharing;
 mod support;
+mod tile_heap;
 mod totals;
 mod viewed;

@@ -11,7 +11,7 @@ use framegraph_vulkan::{Cx, Executor, Imports, MemoryReport, RecordError};
 /// Width and height in texels.
 const SIZE: [u32; 2] = [64, 48];
 
-/// What a frame cost, and how far its picture is from the reference.
+/// Cost of a frame, and the difference of its picture from the reference.
 pub struct Report {
     pub counts: Counts,
     /// Counts of the plan, which those of the frame must equal.

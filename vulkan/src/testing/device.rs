@@ -13,7 +13,7 @@ type Messages = Mutex<Vec<String>>;
 /// Reason that no device can be opened.
 pub type OpenError = Box<dyn std::error::Error + Send + Sync>;
 
-/// What to open.
+/// Properties of the device to open.
 #[derive(Clone, Copy, Debug)]
 pub struct DeviceRequest {
     /// Enables the validation layers with synchronization validation; opening fails without them.

@@ -16,6 +16,8 @@ fn post_processing_is_a_subpass_and_its_picture_is_the_reference() -> TestResult
         assert_eq!(report.counts, report.planned, "{samples}");
         assert_eq!((report.counts.passes, report.counts.steps, report.subpasses), (5, 4, 2), "{samples}");
         assert_eq!(report.moved, 1, "ambient occlusion runs on the second queue");
+        let memory = report.memory;
+        assert!(memory.allocated_bytes <= memory.unshared_bytes && memory.unshared_bytes > 0, "{samples}: {memory:?}");
         // Depth, shadow and the picture are stored; color never leaves the tile.
         assert_eq!((report.counts.unresolves, report.counts.resolves), (0, 3), "{samples}");
     }

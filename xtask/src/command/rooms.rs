@@ -71,6 +71,13 @@ const ROWS: &[Row] = &[
         before: ["-", "-", "-", "-", "-"],
     },
     Row {
+        name: "`vulkan`: the executor on Vulkan",
+        package: "framegraph-vulkan",
+        features: &[],
+        folder: Some("vulkan"),
+        before: ["-", "-", "-", "-", "-"],
+    },
+    Row {
         name: "`renderer`: the executor",
         package: "framegraph-wgpu",
         features: &[],

@@ -78,7 +78,7 @@ impl<'d> Case<'d> {
     /// Executes some frames.
     pub fn run(&self, schedule: Option<&Schedule>) -> TestResult<Verdict> {
         let (graph, plan, gpu) = (self.plan.graph(), &self.plan, self.device.gpu());
-        let options = ExecutorOptions { multiview: true, ..ExecutorOptions::default() };
+        let options = ExecutorOptions { multiview: true, explicit_chains: true, ..ExecutorOptions::default() };
         let (mut executor, mut kit) = (Executor::with(gpu, options)?, Kit::new(gpu));
         executor.prepare(plan, schedule.map(|schedule| (schedule, None)))?;
         let (mut verdict, mut shaders) = (Verdict { plan: plan.clone(), ..Verdict::default() }, HashMap::new());
@@ -142,7 +142,7 @@ fn entry(graph: &Graph, id: ResourceId) -> Contents {
     }
 }
 
-/// What a frame left.
+/// Results of a frame.
 struct Found<'f> {
     number: u32,
     kit: &'f mut Kit,

@@ -33,7 +33,7 @@ impl Ranges {
     }
 }
 
-/// What recorders of a frame share.
+/// State shared by the recorders of a frame.
 pub struct Frame<'k> {
     pub kit: &'k mut Kit,
     pub number: u32,
