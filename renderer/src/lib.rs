@@ -181,7 +181,7 @@ pub use pipelines::bounds::unproved_index;
 pub use pipelines::loops::endless_loop;
 pub use pipelines::pipeline::{ComputePipeline, Group, Pipeline, RasterPipeline};
 pub use pipelines::samplers::SamplerDesc;
-pub use pipelines::shader::{Shader, ShaderError};
+pub use pipelines::shader::{InterfaceChange, Shader, ShaderError};
 pub use pipelines::state::{Compute, Constants, Depth, Output, Raster, VertexBuffer};
 pub use placed::not_placed::NotPlaced;
 pub use record::Record;
