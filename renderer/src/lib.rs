@@ -183,7 +183,7 @@ pub use pipelines::binding_error::{BindingError, BindingReason};
 pub use pipelines::loops::endless_loop;
 pub use pipelines::pipeline::{ComputePipeline, Group, Pipeline, RasterPipeline};
 pub use pipelines::samplers::SamplerDesc;
-pub use pipelines::shader::{Shader, ShaderError};
+pub use pipelines::shader::{InterfaceChange, Shader, ShaderError};
 pub use pipelines::state::{Compute, Constants, Depth, Output, Raster, VertexBuffer};
 pub use placed::not_placed::NotPlaced;
 pub use record::Record;

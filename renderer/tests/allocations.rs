@@ -59,10 +59,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         })?;
         let [hand, called, executed, timed, looped] =
             [of_hand, of_called, executed, timed, looped].map(|sum| sum as f64 / FRAMES as f64);
-        println!(
+        program::line(format_args!(
             "{passes} × {draws}: allocations a frame: {hand:.2} by hand, {executed:.2} executed, {timed:.2} timed; \
              {called:.2} by hand with a callback at the end, {looped:.2} declared and executed by a frame loop"
-        );
+        ));
         assert!(executed <= hand, "the executor allocates");
         assert!(looped <= called, "the frame loop allocates");
     }

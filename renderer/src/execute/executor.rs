@@ -263,12 +263,8 @@ impl Executor {
         to: Destination<'_>,
     ) -> Result<FrameCommands, ExecuteError> {
         let span = span!("frame"; steps, passes, loads, stores, loaded_bytes, stored_bytes);
-        // The last submission has already polled the device, so polling is only needed to read times.
-        if self.timing.is_enabled() {
-            self.gpu.poll()?;
-        } else {
-            self.gpu.errors().check("a frame")?;
-        }
+        // Notices a lost device, and reads times that have arrived.
+        self.gpu.poll()?;
         self.unsubmitted = false;
         self.caches.begin_frame(self.options.max_age, self.options.max_pipeline_age);
         self.executed = Counts::default();

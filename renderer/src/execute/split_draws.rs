@@ -147,7 +147,7 @@ impl Cx<'_> {
             .iter_mut()
             .map(|(range, made)| {
                 move |(): &()| {
-                    *made = Some(bundle(device, targets, read_only, name, |draws| record(draws, range.clone())))
+                    *made = Some(bundle(device, targets, read_only, name, |draws| record(draws, range.clone())));
                 }
             })
             .collect();

@@ -4,7 +4,7 @@ use crate::device::error::DeviceError;
 use crate::pipelines::bind_groups::BindGroupCache;
 use crate::pipelines::interface::Interface;
 use crate::pipelines::pipeline::Pipeline;
-use crate::pipelines::shader::{Shader, ShaderError};
+use crate::pipelines::shader::{InterfaceChange, Shader, ShaderError};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use wgpu::Device;
@@ -76,12 +76,12 @@ impl<'s> ComparedSources<'s> {
             };
             let Ok(after) = group.layout() else { continue };
             groups.check(device, before, after).map_err(|(bindings, error)| match error {
-                DeviceError::Refused { message, .. } => ShaderError::Reload {
+                DeviceError::Refused { message, .. } => ShaderError::Reload(Box::new(InterfaceChange {
                     name: self.name.to_owned(),
                     place: format!("bind group {index}"),
                     old: "a layout that fits the bound resources".to_owned(),
                     new: format!("one that does not ({})", group.explain(&bindings, message)),
-                },
+                })),
                 other => ShaderError::Device(other),
             })?;
         }

@@ -1,6 +1,6 @@
 //! Interface of a shader's source: what its entry points expect from recorders. A reload must not change it.
 
-use crate::pipelines::shader::ShaderError;
+use crate::pipelines::shader::{InterfaceChange, ShaderError};
 use std::collections::BTreeMap;
 use wgpu::naga::{self, AddressSpace, Module, ShaderStage, TypeInner};
 
@@ -175,7 +175,7 @@ impl Interface {
 }
 
 fn changed(name: &str, place: &str, old: String, new: String) -> ShaderError {
-    ShaderError::Reload { name: name.to_owned(), place: place.to_owned(), old, new }
+    ShaderError::Reload(Box::new(InterfaceChange { name: name.to_owned(), place: place.to_owned(), old, new }))
 }
 
 fn described(variable: Option<&Variable>) -> String {

@@ -92,23 +92,34 @@ pub enum ShaderError {
         message: String,
     },
     /// A new source does not fit the recorders of the old one, which stays in use.
-    #[error(
-        "shader `{name}` keeps its old source: {place} would change from {old} to {new}; restart the program with a \
-         recorder that fits"
-    )]
-    Reload {
-        /// Name of the shader.
-        name: String,
-        /// Entry points, binding, vertex inputs or outputs that would change.
-        place: String,
-        /// Declaration in the old source.
-        old: String,
-        /// Declaration in the new source.
-        new: String,
-    },
+    #[error(transparent)]
+    Reload(Box<InterfaceChange>),
     /// The device failed.
     #[error(transparent)]
     Device(DeviceError),
+}
+
+/// Error: a new source of a shader expects something else of recorders than the old one.
+#[derive(Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "shader `{name}` keeps its old source: {place} would change from {old} to {new}; restart the program with a recorder \
+     that fits"
+)]
+pub struct InterfaceChange {
+    /// Name of the shader.
+    pub name: String,
+    /// Entry points, binding, vertex inputs, outputs or constant that would change.
+    pub place: String,
+    /// Declaration in the old source.
+    pub old: String,
+    /// Declaration in the new source.
+    pub new: String,
+}
+
+impl std::fmt::Debug for InterfaceChange {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }
 
 impl std::fmt::Debug for ShaderError {

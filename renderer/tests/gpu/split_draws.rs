@@ -37,9 +37,9 @@ fn declare(frame: &mut Frame, read_only: bool, wrong: Option<u32>) -> Result<Tex
         |p| {
             let color = p.color(color, Intent::Clear(ClearValue::BLACK))?;
             if read_only {
-                p.depth_read_only(depth).map(drop)?
+                p.depth_read_only(depth).map(drop)?;
             } else {
-                p.depth(depth, Intent::Modify).map(drop)?
+                p.depth(depth, Intent::Modify).map(drop)?;
             }
             p.resolve(color, resolved)
         },

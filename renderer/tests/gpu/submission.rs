@@ -256,7 +256,7 @@ fn a_shader_is_reloaded_between_frames() -> TestResult {
         let other = TINT.text().replace("fs_main", "fs_other");
         let report = bench.executor.reload_shader(&TINT, &other);
         assert!(
-            matches!(&report, Err(ShaderError::Reload { old, new, .. }) if old.contains("fs_main") && new.contains("fs_other")),
+            matches!(&report, Err(ShaderError::Reload(change)) if change.old.contains("fs_main") && change.new.contains("fs_other")),
             "{report:?}"
         );
         shows(&mut bench, Format::Rgba8Unorm, GREEN)?;
