@@ -29,7 +29,7 @@ FILE is a plan (JSON, docs/reference/plan-json.md), a graph (FRAME.ron, docs/ref
   --environment FILE  environment light with --live: a .hdr, .exr or .ktx picture; default: a clear sky
   --against FILE      plan or graph to compare with
   --trace FILE        frame times to show
-  --caps DEVICE       device for graphs: desktop, tiler, wgpu (default), or a FILE.ron that describes one
+  --caps DEVICE       device for graphs: desktop, tiler, mali, adreno, apple, wgpu (default), wgpu-native, or a FILE.ron
   --size WxH          frame size in texels; default: the size in the file, else 1920x1080
   --set FEATURE=on|off
                       enable or disable a feature of the graph; repeatable

@@ -9,7 +9,7 @@ usage: plan FRAME.ron [options]
 
 FRAME.ron is a graph; docs/reference/graph-format.md documents its fields.
 
-  --caps DEVICE       desktop, tiler, wgpu (default), or a FILE.ron that describes a device
+  --caps DEVICE       desktop, tiler, mali, adreno, apple, wgpu (default), wgpu-native, or a FILE.ron that describes a device
   --size WxH          frame size in texels; default: the size in the file, else 1920x1080
   --set FEATURE=on|off
                       enable or disable a feature of the file; repeatable

@@ -9,7 +9,7 @@ use crate::effects::depth::resolve::{DepthOf, DepthResolve};
 use crate::effects::fxaa::Fxaa;
 use crate::effects::post::Post;
 use crate::effects::shadow::{Shadow, ShadowLayer, maps_desc};
-use crate::gpu_scene::shadow_views::ShadowSettings;
+use crate::gpu_scene::shadow_views::{ShadowMaps, ShadowSettings};
 use crate::gpu_scene::view::ViewId;
 use framegraph::file::{Call, Host, Plugin, PluginError, PluginSlot, Registry, SlotType};
 use framegraph::{Pass, Texture};
@@ -74,7 +74,7 @@ pub fn registry<'p, H: Host + ?Sized + 'p>() -> Registry<'p, H> {
     });
     add("color", &[DEPTH, SHADOW, OUTPUT], |host, call| {
         let (depth, samples) = (input(call, DEPTH)?, params(call, 1)?);
-        let shadow = call.current("shadow");
+        let shadow = call.current("shadow").map(|texture| ShadowMaps { texture, view: ViewId::MAIN });
         made(host, call, &Color { shadow, samples, ..Color::new(depth) }, |io| io.hdr)
     });
     add("depth_resolve", &[DEPTH, OUTPUT], |host, call| {

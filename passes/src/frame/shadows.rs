@@ -2,12 +2,11 @@
 
 use crate::effects::depth::structure::{Resolution, structure};
 use crate::effects::shadow::{maps_slot, shadow_maps};
-use crate::gpu_scene::shadow_views::ShadowSettings;
+use crate::gpu_scene::shadow_views::{ShadowMaps, ShadowSettings};
 use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::Views;
 use crate::program::Programs;
-use crate::stages::{Handles, Slot, StageError};
-use framegraph::Texture;
+use crate::stages::{Handles, StageError};
 use framegraph_wgpu::Frame;
 
 /// Declares shadow maps, unless a stage has already provided them, and the structure if contact shadows are on.
@@ -17,9 +16,10 @@ pub(super) fn shadow<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Size
     settings: Option<ShadowSettings>,
     (resolution, levels): (Resolution, u8),
 ) -> Result<(), StageError> {
+    handles.check_shadow_maps()?;
     let Some(shadows) = settings.filter(|_| maps_of(handles).is_none()) else { return Ok(()) };
     if let Some(maps) = shadow_maps(frame, handles.view(), &shadows)? {
-        handles.set(maps_slot(&shadows), maps);
+        handles.set_shadow_maps(maps_slot(&shadows), maps);
     }
     // Declared before the prepass, so that no pass separates prepass and color pass.
     if shadows.contact.is_some() {
@@ -29,6 +29,6 @@ pub(super) fn shadow<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Size
 }
 
 /// Returns the shadow maps: depth, or moments.
-pub(super) fn maps_of(handles: &Handles) -> Option<Texture> {
-    handles.find(Slot::SHADOW_MAP).or_else(|| handles.find(Slot::SHADOW_MOMENTS))
+pub(super) fn maps_of(handles: &Handles) -> Option<ShadowMaps> {
+    handles.shadow_maps()
 }

@@ -80,8 +80,8 @@ DEBUGGING
 
 EXECUTION
   --frames N           measured frames, after four warm-up frames (8)
-  --alias heap|pool|none  memory sharing of transient textures: heap places them in one memory block (Vulkan; elsewhere as
-                       pool), pool reuses textures of equal description, none disables sharing (pool)
+  --alias heap|pool|off   memory sharing of transient textures: heap places them in one memory block (Vulkan; elsewhere as
+                       pool), pool reuses textures of equal description, off disables sharing (pool)
   --threads auto|N     threads that record a frame where measurements show a gain (auto: number of cores)
   --memory BYTES       memory limit of loading: files, decoding, mip levels, upload; such as 512MiB or 2GB (half of the
                        machine's memory)

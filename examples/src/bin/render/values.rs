@@ -40,8 +40,9 @@ pub fn alias(text: &str) -> Result<Alias, String> {
     match text {
         "heap" => Ok(Alias::Heap),
         "pool" => Ok(Alias::Pool),
-        "none" => Ok(Alias::Off),
-        _ => Err(format!("--alias {text}: expected `heap`, `pool` or `none`")),
+        // `none` was the name of `off`.
+        "off" | "none" => Ok(Alias::Off),
+        _ => Err(format!("--alias {text}: expected `heap`, `pool` or `off`")),
     }
 }
 
