@@ -132,7 +132,6 @@ fn a_slice_keeps_the_others() {
     compile(&g, &Caps::wgpu(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan).unwrap();
     let found: Vec<_> = plan.attachments().iter().map(|a| (a.layer, a.load, a.store)).collect();
     assert_eq!(found, [(0, LoadOp::Clear, StoreOp::Store), (3, LoadOp::DontCare, StoreOp::Store)]);
-    assert!(check::examine(&plan).is_clean(), "{}", check::examine(&plan));
 }
 
 #[test]
