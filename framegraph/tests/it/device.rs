@@ -1,4 +1,4 @@
-//! What the device refuses is an error of the compiler, with pass, resource, value, limit and advice.
+//! A graph that the device would refuse is an error of the compiler, with pass, resource, value, limit and advice.
 
 use framegraph::file::{GraphFile, Registry};
 use framegraph::*;
