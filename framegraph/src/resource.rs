@@ -111,6 +111,14 @@ impl TextureDesc {
         }
     }
 
+    /// Number of layers, or of slices of level `mip` of a three-dimensional texture: the range of an attachment's layer.
+    pub const fn slices(&self, mip: u32) -> u32 {
+        match self.dimension {
+            Dimension::D2 => self.layers as u32,
+            Dimension::D3 => halved(self.layers as u32, mip),
+        }
+    }
+
     /// Size in bytes of all levels, layers, planes and samples, without padding. Saturates.
     pub const fn bytes(&self, frame: [u32; 2]) -> u64 {
         if self.mips == 1 && !self.format.is_compressed() {

@@ -59,6 +59,17 @@ pub enum PassError {
         /// Layers of the view's maps.
         layers: u16,
     },
+    /// A view reads the shadow maps of another view, and its own would differ.
+    #[error(
+        "view {view} reads the shadow maps of view {drawn}, which are fitted to another camera; make both views with \
+         `CameraView::together`, or let each draw its own maps"
+    )]
+    ShadowMapsApart {
+        /// The view that reads the maps.
+        view: u32,
+        /// The view for which they are drawn.
+        drawn: u32,
+    },
     /// A surface is refractive, but the frame has no pass for it.
     #[error(
         "a surface of the scene transmits light, but the frame keeps no picture of what is behind it; declare the frame with \

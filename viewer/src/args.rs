@@ -53,7 +53,7 @@ fn command() -> clap::Command {
         option(
             "caps",
             "DEVICE",
-            "Device for graphs: desktop, tiler, wgpu (default), or a FILE.ron that describes one",
+            "Device for graphs: desktop, tiler, mali, adreno, apple, wgpu (default), wgpu-native, or a FILE.ron",
         ),
         option("size", "WxH", "Frame size in texels; default: the size in the file, else 1920x1080"),
         option("set", "FEATURE=on|off", "Enable or disable a feature of the graph; repeatable").action(ArgAction::Append),

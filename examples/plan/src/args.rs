@@ -100,7 +100,11 @@ const AFTER: &str = "Exit codes: 0 success, 1 budget exceeded, 2 invalid input o
 fn command() -> clap::Command {
     cli::command("plan", ABOUT, AFTER).override_usage(USAGE).args([
         argument("FRAME.ron", "A graph; docs/reference/graph-format.md documents its fields"),
-        option("caps", "DEVICE", "desktop, tiler, wgpu (default), or a FILE.ron that describes a device"),
+        option(
+            "caps",
+            "DEVICE",
+            "desktop, tiler, mali, adreno, apple, wgpu (default), wgpu-native, or a FILE.ron that describes a device",
+        ),
         option("size", "WxH", "Frame size in texels; default: the size in the file, else 1920x1080"),
         option("set", "FEATURE=on|off", "Enable or disable a feature of the file; repeatable").action(ArgAction::Append),
         option("order", "ORDER", "declared (default) or optimized"),

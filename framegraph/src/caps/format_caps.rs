@@ -1,4 +1,4 @@
-//! What a device can do with each format.
+//! Uses and sample counts of each format on a device.
 
 use crate::enum_names::bits;
 use crate::format::Format;

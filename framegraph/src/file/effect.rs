@@ -39,6 +39,9 @@ impl<'f> Declaring<'_, 'f> {
                 | (SlotType::Target, Some(Handle::Texture(_)) | None)
                 | (SlotType::TargetBuffer, Some(Handle::Buffer(_)) | None) => None,
                 (_, None) if mention.version == Wanted::Entry => Some(ValueReason::MadeEmpty),
+                (_, None) if row.mentions.iter().any(|m| m.writes && m.resource == mention.resource) => {
+                    Some(ValueReason::MadeHere)
+                }
                 (_, None) => Some(ValueReason::MadeLater),
                 (ty, Some(_)) => Some(ValueReason::SlotType { slot: slot.name.into(), ty }),
             };
@@ -50,7 +53,7 @@ impl<'f> Declaring<'_, 'f> {
         }
         let mut call = Call { source: self.source, name: &form.name.value, params: form.params.as_ref(), bindings };
         if let Err(error) = plugin.declare(host, &mut call) {
-            return Err(self.refused(row, kind, error));
+            return Err(self.refused(row, form, error));
         }
         for (mention, binding) in row.mentions.iter().zip(&call.bindings).filter(|(m, _)| m.writes) {
             if binding.given.is_none() {
@@ -66,15 +69,22 @@ impl<'f> Declaring<'_, 'f> {
         Ok(())
     }
 
-    fn refused(&self, row: &PassRow<'f>, kind: &str, error: PluginError) -> FileError {
+    fn refused(&self, row: &PassRow<'f>, form: &'f PluginForm, error: PluginError) -> FileError {
         let refused = |reason| self.source.error(row.id, reason);
         let error = match error {
+            // Omitted parameters have no position in the file, so the error points at the plugin.
+            PluginError::Params(error) if form.params.is_none() => {
+                let FileError { line, column, .. } = refused((*error.reason).clone());
+                FileError { line, column, ..error }
+            }
             PluginError::Params(error) => error,
             PluginError::Declare(error) => {
                 let resource = error.resource.map(|r| r.name);
                 FileError { resource, ..refused(FileReason::Declare(error.reason)) }
             }
-            PluginError::Custom { message, hint } => refused(FileReason::Plugin { plugin: kind.into(), message, hint }),
+            PluginError::Custom { message, hint } => {
+                refused(FileReason::Plugin { plugin: form.kind.value.clone(), message, hint })
+            }
         };
         error.of_pass(&row.id.value)
     }

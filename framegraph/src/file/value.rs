@@ -22,6 +22,8 @@ error_enum! {
         EmptyHistory "the history has 0 frames", "use 1 or more";
         /// A resource created by a plugin is used before that plugin runs.
         MadeLater "the plugin that creates it is listed later", "list the plugin first, or select the version with `name@plugin`";
+        /// A plugin reads a resource that it creates.
+        MadeHere "the plugin reads what it creates itself", "let an earlier entry create it, or read it in a later entry";
         MadeEmpty "its initial contents are undefined, because a plugin creates it", "remove `@entry`";
         ForwardsTextures "only a texture can be forwarded, once, to another texture", "use textures that passes write";
         Path(path: String) "`{path}` is outside of the folder of this file",

@@ -8,6 +8,7 @@ mod counts;
 mod culling;
 mod decisions;
 mod declaring;
+mod device;
 mod diff;
 mod dump;
 mod errors;

@@ -1,11 +1,11 @@
 //! The tile heap, checked by a simulation that shares no code with the choice: memory is cells with owners, steps run
 //! in order, and traffic is counted access by access.
 
-use framegraph_check::generate::{self, Entropy, Profile};
 use framegraph::{
     Access, Aspect, Caps, Desc, Extent, Format, Graph, Intent, Join, Kind, LoadOp, Options, Plan, ResourceId, Scratch,
     StoreOp, TextureDesc, TileHeap, compile,
 };
+use framegraph_check::generate::{self, Entropy, Profile};
 
 /// Size of a cell in bytes.
 const CELL: u64 = 256;

@@ -19,6 +19,7 @@ use crate::effects::transparency::{Transparency, draw_sorted};
 use crate::error::PassError;
 use crate::gpu_scene::draw::SurfaceDraw;
 use crate::gpu_scene::lighting::Lighting;
+use crate::gpu_scene::shadow_views::ShadowMaps;
 use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::{ViewId, Views};
 use crate::light::shading::{AlphaUse, Shading};
@@ -36,7 +37,7 @@ pub struct Color {
     /// Source of the depth; the radiance has its size.
     pub depth: ColorDepth,
     /// Shadow maps of the view, depth or moments; `None` for no shadows.
-    pub shadow: Option<Texture>,
+    pub shadow: Option<ShadowMaps>,
     /// Ambient occlusion of opaque and masked surfaces: visibility in red; in format Rgba16Float, the bent normal in
     /// the other channels. Has the size of the depth, or is smaller.
     pub occlusion: Option<Texture>,

@@ -20,6 +20,7 @@ use crate::effects::transparency::{Transparency, draw_sorted};
 use crate::gpu_scene::draw::SurfaceDraw;
 use crate::gpu_scene::indirect::DrawList;
 use crate::gpu_scene::lighting::Lighting;
+use crate::gpu_scene::shadow_views::ShadowMaps;
 use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::{CameraView, ViewId, Views};
 use crate::light::shading::{AlphaUse, Shading};
@@ -173,7 +174,7 @@ pub struct Transparent {
     /// Radiance of each sample; the same as `hdr` at one sample per texel.
     pub samples: Texture,
     /// Shadow maps of the view; `None` for no shadows.
-    pub shadow: Option<Texture>,
+    pub shadow: Option<ShadowMaps>,
     /// Layer to draw.
     pub layer: Layer,
     /// Order of blended surfaces. Unordered techniques draw them in later passes.

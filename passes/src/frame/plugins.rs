@@ -18,7 +18,7 @@ use crate::effects::taa::{SUM_FORMAT, Taa, TaaSettings};
 use crate::effects::transmission::SceneCopy;
 use crate::effects::upscale::sharpen::Sharpen;
 use crate::effects::upscale::{Enlarge, UpscaleFilter};
-use crate::gpu_scene::shadow_views::ShadowSettings;
+use crate::gpu_scene::shadow_views::{ShadowMaps, ShadowSettings};
 use crate::gpu_scene::view::ViewId;
 use crate::settings::precision::Precision;
 use framegraph::file::{Call, Host, Plugin, PluginError, PluginSlot, Registry, SlotType};
@@ -104,7 +104,7 @@ pub fn registry<'p, H: Host + ?Sized + 'p>() -> Registry<'p, H> {
     });
     add("color", &[DEPTH, SHADOW, OUTPUT], |host, call| {
         let (depth, samples) = (input(call, DEPTH)?, params(call, 1)?);
-        let shadow = call.current("shadow");
+        let shadow = call.current("shadow").map(|texture| ShadowMaps { texture, view: ViewId::MAIN });
         made(host, call, &Color { shadow, samples, ..Color::new(depth) }, |io| io.hdr)
     });
     add("depth_resolve", &[DEPTH, OUTPUT], |host, call| {

@@ -2,6 +2,7 @@
 
 use super::slot::SlotFault;
 use framegraph::DeclareError;
+use std::panic::Location;
 
 /// Error of changing or declaring a list of stages.
 #[derive(Clone, PartialEq, Eq, thiserror::Error)]
@@ -31,16 +32,33 @@ pub enum StageError {
     },
     /// A stage set a handle of another frame.
     #[error(
-        "stage `{stage}`: the texture for `{slot}` is of another frame, or older than the last reset; set one of this frame"
+        "stage `{stage}`: the texture for `{slot}` is of another frame, or older than the last reset (at {}:{}); set one of \
+         this frame", .at.file(), .at.line()
     )]
     Foreign {
         /// The stage.
         stage: &'static str,
         /// Name of the slot.
         slot: &'static str,
+        /// Code that set the texture.
+        at: &'static Location<'static>,
+    },
+    /// Shadow maps were set without the view that they are drawn for.
+    #[error(
+        "stage `{stage}`: `{slot}` is set without the view that the shadow maps are drawn for (at {}:{}); use \
+         `Handles::sharing_shadows`, or `Handles::with_shadow_maps` with the result of `shadow_maps`",
+        .at.file(), .at.line()
+    )]
+    MapsOfUnknownView {
+        /// The stage.
+        stage: &'static str,
+        /// Name of the slot.
+        slot: &'static str,
+        /// Code that set the texture.
+        at: &'static Location<'static>,
     },
     /// A stage set a texture that does not fit the slot.
-    #[error("stage `{stage}`: cannot set `{slot}` to `{texture}`: {fault}")]
+    #[error("stage `{stage}`: cannot set `{slot}` to `{texture}`: {fault} (at {}:{})", .at.file(), .at.line())]
     Wrong {
         /// The stage.
         stage: &'static str,
@@ -50,6 +68,8 @@ pub enum StageError {
         texture: String,
         /// Reason.
         fault: SlotFault,
+        /// Code that set the texture.
+        at: &'static Location<'static>,
     },
     /// A stage would overwrite the result of an earlier one.
     #[error(

@@ -2,8 +2,10 @@
 
 use super::error::StageError;
 use super::slot::Slot;
+use crate::gpu_scene::shadow_views::ShadowMaps;
 use crate::gpu_scene::view::ViewId;
 use framegraph::{Extent, Graph, Target, Texture};
+use std::panic::Location;
 
 /// Name of the caller in errors outside of stages.
 pub(super) const CALLER: &str = "the caller";
@@ -17,6 +19,8 @@ pub struct Handles {
     /// Stage that is being declared.
     stage: &'static str,
     target: Target,
+    /// View that the shadow maps are drawn for; `None` if not known.
+    shadow_view: Option<ViewId>,
 }
 
 /// Texture of a slot.
@@ -26,6 +30,8 @@ struct Held {
     texture: Texture,
     /// Stage that set the texture.
     by: &'static str,
+    /// Code that set the texture.
+    at: &'static Location<'static>,
     checked: bool,
 }
 
@@ -39,14 +45,59 @@ impl Default for Handles {
 impl Handles {
     /// Returns empty handles for a view with pictures of this size.
     pub fn for_view(view: ViewId, extent: Extent) -> Self {
-        Self { view, extent, slots: Vec::with_capacity(8), stage: CALLER, target: Target::New }
+        Self { view, extent, slots: Vec::with_capacity(8), stage: CALLER, target: Target::New, shadow_view: None }
     }
 
-    /// Returns the handles with a texture set, such as a shadow map that several views share.
+    /// Returns the handles with a texture set. For shadow maps use [`Handles::with_shadow_maps`].
     #[must_use]
+    #[track_caller]
     pub fn with(mut self, slot: Slot, texture: Texture) -> Self {
         self.set(slot, texture);
         self
+    }
+
+    /// Returns the handles with shadow maps in `slot`, so that the frame draws none for this view.
+    #[must_use]
+    #[track_caller]
+    pub fn with_shadow_maps(mut self, slot: Slot, maps: ShadowMaps) -> Self {
+        self.set_shadow_maps(slot, maps);
+        self
+    }
+
+    /// Returns the handles with the shadow maps of another view. Both views must be made with
+    /// [`CameraView::together`](crate::CameraView::together); otherwise recording fails.
+    #[must_use]
+    #[track_caller]
+    pub fn sharing_shadows(mut self, other: &Self) -> Self {
+        let held = [Slot::SHADOW_MAP, Slot::SHADOW_MOMENTS].into_iter().find(|slot| other.find(*slot).is_some());
+        if let Some((slot, maps)) = held.zip(other.shadow_maps()) {
+            self.set_shadow_maps(slot, maps);
+        }
+        self
+    }
+
+    /// Sets the shadow maps of the view.
+    #[track_caller]
+    pub(crate) fn set_shadow_maps(&mut self, slot: Slot, maps: ShadowMaps) {
+        self.set(slot, maps.texture);
+        self.shadow_view = Some(maps.view);
+    }
+
+    /// Returns the shadow maps: depth, or moments.
+    pub fn shadow_maps(&self) -> Option<ShadowMaps> {
+        let texture = self.find(Slot::SHADOW_MAP).or_else(|| self.find(Slot::SHADOW_MOMENTS))?;
+        Some(ShadowMaps { texture, view: self.shadow_view.unwrap_or(self.view) })
+    }
+
+    /// Fails if the shadow maps were set without the view that they are drawn for.
+    pub(crate) fn check_shadow_maps(&self) -> Result<(), StageError> {
+        let held = self.held(Slot::SHADOW_MAP).or_else(|| self.held(Slot::SHADOW_MOMENTS));
+        match held {
+            Some(held) if self.shadow_view.is_none() => {
+                Err(StageError::MapsOfUnknownView { stage: held.by, slot: held.slot.name, at: held.at })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Returns the view.
@@ -84,8 +135,12 @@ impl Handles {
     }
 
     /// Sets the texture of a slot for later stages. Every write makes a new handle; set that one.
+    #[track_caller]
     pub fn set(&mut self, slot: Slot, texture: Texture) {
-        let held = Held { slot, texture, by: self.stage, checked: false };
+        let held = Held { slot, texture, by: self.stage, at: Location::caller(), checked: false };
+        if [Slot::SHADOW_MAP.name, Slot::SHADOW_MOMENTS.name].contains(&slot.name) {
+            self.shadow_view = None;
+        }
         match self.slots.iter_mut().find(|held| held.slot.name == slot.name) {
             Some(own) => *own = held,
             None => self.slots.push(held),
@@ -107,12 +162,12 @@ impl Handles {
     /// Checks textures set since the last check against their slots.
     pub(super) fn check(&mut self, graph: &Graph) -> Result<(), StageError> {
         for held in self.slots.iter_mut().filter(|held| !held.checked) {
-            let Held { slot, texture, by: stage, .. } = *held;
-            let resource = graph.resource_of(texture).ok_or(StageError::Foreign { stage, slot: slot.name })?;
+            let Held { slot, texture, by: stage, at, .. } = *held;
+            let resource = graph.resource_of(texture).ok_or(StageError::Foreign { stage, slot: slot.name, at })?;
             let desc = graph.resources()[resource.index()].desc.texture().copied();
-            if let Some(fault) = desc.and_then(|desc| slot.fault(desc.format, desc.samples)) {
+            if let Some(fault) = desc.and_then(|desc| slot.fault(&desc, self.extent)) {
                 let texture = graph.resource_name(resource).to_owned();
-                return Err(StageError::Wrong { stage, slot: slot.name, texture, fault });
+                return Err(StageError::Wrong { stage, slot: slot.name, texture, fault, at });
             }
             held.checked = true;
         }

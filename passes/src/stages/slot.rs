@@ -1,6 +1,6 @@
 //! Slots of the textures that stages exchange.
 
-use framegraph::Format;
+use framegraph::{Extent, Format, TextureDesc};
 use std::fmt;
 
 /// Content of a slot's texture.
@@ -80,14 +80,29 @@ impl Slot {
         Self { name, holds }
     }
 
-    /// Returns the reason why a texture of this format and sample count does not fit the slot, if any.
-    pub(super) fn fault(self, format: Format, samples: u8) -> Option<SlotFault> {
+    /// Slots whose textures have the size of the view's pictures.
+    const OF_THE_VIEW: [&'static str; 3] = [Self::DEPTH.name, Self::HDR_SAMPLES.name, Self::VELOCITY.name];
+
+    /// Returns the reason why a texture does not fit the slot of a view with pictures of this size, if any.
+    pub(super) fn fault(self, desc: &TextureDesc, view: Extent) -> Option<SlotFault> {
+        let TextureDesc { format, samples, extent, .. } = *desc;
+        // Sizes relative to the frame and absolute ones are equal for some frames.
+        let apart = match (extent, view) {
+            (Extent::Absolute { .. }, Extent::Absolute { .. }) => extent != view,
+            // Fractions may be written in several ways.
+            (Extent::Relative { .. }, Extent::Relative { .. }) => {
+                [[1920, 1080], [1001, 997]].iter().any(|frame| extent.texels(*frame) != view.texels(*frame))
+            }
+            _ => false,
+        };
         let depth = matches!(self.holds, Holds::Depth | Holds::DepthSamples);
         let single = matches!(self.holds, Holds::Color | Holds::Depth);
         if format.has_depth() != depth {
             Some(SlotFault::Format { format, depth })
         } else if single && samples > 1 {
             Some(SlotFault::Samples { samples })
+        } else if apart && Self::OF_THE_VIEW.contains(&self.name) {
+            Some(SlotFault::Extent { extent, view })
         } else {
             None
         }
@@ -111,6 +126,25 @@ pub enum SlotFault {
         /// Samples per texel of the texture.
         samples: u8,
     },
+    /// The texture has another size than the pictures of the view.
+    #[error("its size is {}, and the view has {}; use `Handles::extent`", shown(.extent), shown(.view))]
+    Extent {
+        /// Size of the texture.
+        extent: Extent,
+        /// Size of the view's pictures.
+        view: Extent,
+    },
+}
+
+/// Describes a size: texels, or the fraction of the frame.
+fn shown(extent: &Extent) -> String {
+    match extent {
+        Extent::Absolute { width, height } => format!("{width}x{height} texels"),
+        relative => {
+            let [width, height] = relative.texels([1000, 1000]).map(|side| f64::from(side) / 1000.0);
+            format!("{width} x {height} of the frame")
+        }
+    }
 }
 
 impl fmt::Debug for SlotFault {

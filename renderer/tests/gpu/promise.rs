@@ -15,7 +15,7 @@ use framegraph::{Caps, Format, FormatCaps, FormatTable, Options, Plan, Scratch, 
 use framegraph_wgpu::{Executor, Frame, Gpu, mock};
 use std::collections::BTreeMap;
 
-/// What became of a case.
+/// Outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Outcome {
     /// Planned and executed.
@@ -81,7 +81,7 @@ impl Bench {
     }
 }
 
-/// Returns the device with all limits and rules lifted. What changes a plan, such as merging, is left.
+/// Returns the device with all limits and rules lifted. Capabilities that change a plan, such as merging, stay.
 fn without_limits(caps: &Caps) -> Caps {
     let resolved = |format| if caps.averages(format) { FormatCaps::NONE } else { FormatCaps::RESOLVABLE };
     let all = FormatTable::all();

@@ -101,7 +101,7 @@ impl Night {
         let (mut frame, mut imports) = (Frame::new(), Imports::new());
         let maps = kept.declare(gpu, &mut frame, ViewId::MAIN, &shadows)?.ok_or("something casts")?;
         kept.import(maps, &mut imports);
-        let handles = Handles::default().with(maps_slot(&shadows.settings), maps);
+        let handles = Handles::default().with_shadow_maps(maps_slot(&shadows.settings), maps);
         let shot = self.execute(gpu, frame, handles, &imports, 1)?;
         kept.drawn(&shadows);
         Ok(shot)

@@ -81,7 +81,7 @@ fn both(settings: &Settings) -> Result<(Frame<World>, Texture), StageError> {
     let stages = stages(settings);
     let left = Handles::for_view(ViewId(0), HALF);
     let left = frame.scope("left", |frame| stages.declare(frame, left, Target::New))?;
-    let right = Handles::for_view(ViewId(1), HALF).with(Slot::SHADOW_MAP, left.get(Slot::SHADOW_MAP)?);
+    let right = Handles::for_view(ViewId(1), HALF).sharing_shadows(&left);
     let right = frame.scope("right", |frame| stages.declare(frame, right, Target::New))?;
     let halves = [left.get(Slot::PICTURE)?, right.get(Slot::PICTURE)?];
     let both = frame.add("side_by_side", SideBySide { halves })?.1;
@@ -94,7 +94,7 @@ fn alone(settings: &Settings, view: ViewId, shadow: ViewId) -> Result<(Frame<Wor
     let mut frame = Frame::new();
     let maps = shadow_maps(&mut frame, shadow, &settings.shadows.unwrap_or_default())?;
     let maps = maps.expect("the settings have maps");
-    let handles = Handles::for_view(view, Extent::FRAME).with(Slot::SHADOW_MAP, maps);
+    let handles = Handles::for_view(view, Extent::FRAME).with_shadow_maps(Slot::SHADOW_MAP, maps);
     let picture = stages(settings).declare(&mut frame, handles, Target::New)?.get(Slot::PICTURE)?;
     frame.graph_mut().readback(picture)?;
     Ok((frame, picture))

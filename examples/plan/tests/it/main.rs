@@ -137,7 +137,7 @@ fn invalid_input_is_one_line_per_error_and_exit_code_2() {
         (&[&frame, "--set", "fxa=off"], "unknown feature `fxa`; did you mean `fxaa`?".into()),
         (
             &[&frame, "--caps", "toaster"],
-            "--caps: invalid value `toaster`; expected desktop, tiler, wgpu or a FILE.ron".into(),
+            "--caps: invalid value `toaster`; expected desktop, tiler, mali, adreno, apple, wgpu, wgpu-native or a FILE.ron".into(),
         ),
         (&[&frame, "--size", "20000x20000"], "the device allows".into()),
         (&["nowhere.ron"], "nowhere.ron: cannot be read: ".into()),

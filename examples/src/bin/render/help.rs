@@ -118,9 +118,9 @@ fn execution() -> impl Iterator<Item = Arg> {
         option("frames", "N", "Measured frames, after four warm-up frames (8)"),
         option(
             "alias",
-            "heap|pool|none",
+            "heap|pool|off",
             "Memory sharing of transient textures: heap places them in one memory block (Vulkan; elsewhere as pool), \
-             pool reuses textures of equal description, none disables sharing (pool)",
+             pool reuses textures of equal description, off disables sharing (pool)",
         ),
         option(
             "threads",

@@ -60,7 +60,7 @@ pub fn declare(settings: &Settings, facts: &Facts, linear: bool, own: OwnResourc
         kept.due = (kept.maps.due(shadows), shadows.maps.len());
         if let Some(maps) = kept.maps.declare(gpu, &mut frame, ViewId::MAIN, shadows).map_err(device)? {
             kept.maps.import(maps, &mut imports);
-            handles = handles.with(maps_slot(&shadows.settings), maps);
+            handles = handles.with_shadow_maps(maps_slot(&shadows.settings), maps);
         }
     }
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);

@@ -34,10 +34,11 @@ pub fn samples(item: &Item) -> Result<u8, String> {
 /// # Errors
 /// One line that names the option.
 pub fn alias(item: &Item) -> Result<Alias, String> {
-    item.parse("`heap`, `pool` or `none`", |text| match text {
+    item.parse("`heap`, `pool` or `off`", |text| match text {
         "heap" => Some(Alias::Heap),
         "pool" => Some(Alias::Pool),
-        "none" => Some(Alias::Off),
+        // `none` was the name of `off`.
+        "off" | "none" => Some(Alias::Off),
         _ => None,
     })
 }

@@ -85,7 +85,7 @@ fn misfit(plan: &Plan, attachment: &Attachment) -> Option<String> {
     };
     let mips = texture.mip_count(plan.frame());
     let end = u32::from(attachment.layer) + u32::from(attachment.layers);
-    if u32::from(attachment.mip) >= mips || end > texture.tracked_layers() || attachment.layers == 0 {
+    if u32::from(attachment.mip) >= mips || end > texture.slices(attachment.mip.into()) || attachment.layers == 0 {
         return Some(format!("{attachment:?} exceeds its texture"));
     }
     let clears = attachment.load == LoadOp::Clear || attachment.stencil_load == LoadOp::Clear;

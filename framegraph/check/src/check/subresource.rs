@@ -82,7 +82,7 @@ impl Subresources {
         let named = self.bytes.get(range.bytes.index()).cloned();
         let layers = named.unwrap_or_else(|| range.layer_range(row.layers));
         // A slice of a three-dimensional texture is a part of its only layer.
-        let layers = if range.slice { 0..1 } else { layers.start..layers.end.min(row.layers) };
+        let layers = if row.layers == 1 { 0..1 } else { layers.start..layers.end.min(row.layers) };
         let mips = mips.start..mips.end.min(row.mips);
         mips.flat_map(move |mip| {
             layers.clone().flat_map(move |layer| {

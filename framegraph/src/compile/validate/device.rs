@@ -8,7 +8,7 @@ use crate::format::Format;
 use crate::graph::{Declared, PassKind, Tables};
 use crate::id::{PassId, ResourceId};
 
-/// What a device allows, prepared for one look per access.
+/// Limits of a device, prepared for one look per access.
 pub(super) struct Allowed {
     /// By format; the last entry is for buffers. Kinds of access that need no further check, one bit each.
     kinds: [u16; 256],

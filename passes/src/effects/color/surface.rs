@@ -94,6 +94,8 @@ pub(crate) struct SurfaceWorld<'a> {
     pub scene: &'a GpuScene,
     pub lighting: &'a Lighting,
     pub view: &'a GpuView,
+    /// All views, to compare shadow maps.
+    pub views: &'a Views,
 }
 
 impl<'a> SurfaceWorld<'a> {
@@ -103,7 +105,13 @@ impl<'a> SurfaceWorld<'a> {
         W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Lighting> + AsRef<Views> + ?Sized,
     {
         let views: &Views = world.as_ref();
-        Ok(Self { programs: world.as_ref(), scene: world.as_ref(), lighting: world.as_ref(), view: views.get(view)? })
+        Ok(Self {
+            programs: world.as_ref(),
+            scene: world.as_ref(),
+            lighting: world.as_ref(),
+            view: views.get(view)?,
+            views,
+        })
     }
 
     /// Returns the source of instances for draws.
@@ -180,7 +188,7 @@ impl SurfaceBindings {
         epilogue: Epilogue,
         cx: &mut Cx<'_>,
     ) -> Result<Self, RecordError> {
-        let SurfaceWorld { lighting, view, .. } = *world;
+        let SurfaceWorld { lighting, view, views, .. } = *world;
         shading.precision.check(cx.gpu()).map_err(PassError::from)?;
         let (wanted, made) = (shading.table, lighting.dfg.settings.visibility);
         if wanted != made {
@@ -219,7 +227,7 @@ impl SurfaceBindings {
             sums.map(|[total, _]| cx.view(total)).transpose()?.map(Binding::from),
             sums.map(|[_, moments]| cx.view(moments)).transpose()?.map(Binding::from),
         ];
-        let shadows = ShadowBindings::new(inputs.shadow, view, cx)?;
+        let shadows = ShadowBindings::new(inputs.shadow, (view, views), cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
         Ok(Self {
             frame: own.into_iter().chain(shadows.bindings).chain(effects).collect(),

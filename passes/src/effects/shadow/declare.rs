@@ -2,7 +2,7 @@
 
 use super::draw::{Shadow, ShadowLayer, maps_desc};
 use super::moments::{MomentStep, ShadowBlur, ShadowLevel};
-use crate::gpu_scene::shadow_views::{MomentSettings, ShadowSettings};
+use crate::gpu_scene::shadow_views::{MomentSettings, ShadowMaps, ShadowSettings};
 use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::{ViewId, Views};
 use crate::program::Programs;
@@ -21,7 +21,7 @@ pub fn shadow_maps<W>(
     frame: &mut Frame<W>,
     view: ViewId,
     settings: &ShadowSettings,
-) -> Result<Option<Texture>, DeclareError>
+) -> Result<Option<ShadowMaps>, DeclareError>
 where
     W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
 {
@@ -35,7 +35,8 @@ where
         );
         frame.graph_mut().note("shadow", told);
     }
-    draw_maps(frame, view, settings, None, (0..settings.layers()).map(ShadowLayer::anew))
+    let maps = draw_maps(frame, view, settings, None, (0..settings.layers()).map(ShadowLayer::anew))?;
+    Ok(maps.map(|texture| ShadowMaps { texture, view }))
 }
 
 /// Returns the slot of the shadow maps.

@@ -1,8 +1,9 @@
 //! Bindings of the shadow maps for shading passes.
 
-use crate::gpu_scene::shadow_views::ShadowFilter;
-use crate::gpu_scene::view::GpuView;
-use framegraph::{DeclareError, PassBuilder, Texture, View};
+use crate::error::PassError;
+use crate::gpu_scene::shadow_views::{ShadowFilter, ShadowMaps};
+use crate::gpu_scene::view::{GpuView, ViewId, Views};
+use framegraph::{DeclareError, PassBuilder, View};
 use framegraph_shaders::{Feature, Features};
 use framegraph_wgpu::{Binding, Cx, RecordError, SamplerDesc, ViewPart};
 use wgpu::TextureViewDimension;
@@ -12,14 +13,16 @@ use wgpu::TextureViewDimension;
 pub(crate) struct ShadowInput {
     view: View,
     layers: u16,
+    /// View that the maps are drawn for.
+    drawn: ViewId,
 }
 
 impl ShadowInput {
     /// Declares the maps as read, if there are any.
-    pub fn declare(maps: Option<Texture>, pass: &mut PassBuilder<'_>) -> Result<Option<Self>, DeclareError> {
+    pub fn declare(maps: Option<ShadowMaps>, pass: &mut PassBuilder<'_>) -> Result<Option<Self>, DeclareError> {
         let Some(maps) = maps else { return Ok(None) };
-        let layers = pass.desc(maps)?.layers;
-        Ok(Some(Self { view: pass.sampled(maps)?, layers }))
+        let layers = pass.desc(maps.texture)?.layers;
+        Ok(Some(Self { view: pass.sampled(maps.texture)?, layers, drawn: maps.view }))
     }
 }
 
@@ -44,9 +47,16 @@ impl ShadowBindings {
         ["CONTACT_STEPS", "CASCADES", "SHADOWS_END", "LAMP_SHADOWS", "WEAK_SHADOWS", "SHOW_CASCADES"];
 
     /// Creates the bindings for a view; empty without maps.
-    pub fn new(input: Option<ShadowInput>, view: &GpuView, cx: &mut Cx<'_>) -> Result<Self, RecordError> {
-        let Some(ShadowInput { view: maps, layers }) = input else { return Ok(Self::default()) };
+    pub fn new(
+        input: Option<ShadowInput>,
+        (view, views): (&GpuView, &Views),
+        cx: &mut Cx<'_>,
+    ) -> Result<Self, RecordError> {
+        let Some(ShadowInput { view: maps, layers, drawn }) = input else { return Ok(Self::default()) };
         let shadows = view.shadows(layers)?;
+        if drawn != view.id && !views.get(drawn)?.shadows(layers)?.fits(shadows) {
+            return Err(PassError::ShadowMapsApart { view: view.id.0, drawn: drawn.0 }.into());
+        }
         let feature = match shadows.settings.filter {
             ShadowFilter::Pcf => Feature::SHADOWS,
             ShadowFilter::Dpcf | ShadowFilter::Pcss => Feature::SHADOW_SOFT,

@@ -7,13 +7,13 @@
 
 use super::declare::draw_maps;
 use super::draw::{ShadowLayer, maps_desc};
-use crate::gpu_scene::shadow_views::MapKey;
 use crate::gpu_scene::shadow_views::ShadowSettings;
 use crate::gpu_scene::shadow_views::ViewShadows;
+use crate::gpu_scene::shadow_views::{MapKey, ShadowMaps};
 use crate::gpu_scene::upload::GpuScene;
 use crate::gpu_scene::view::{ViewId, Views};
 use crate::program::Programs;
-use framegraph::{DeclareError, Entry, Exit, Texture};
+use framegraph::{DeclareError, Entry, Exit};
 use framegraph_wgpu::{DeviceError, Frame, Gpu, Imports, texture_format};
 use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureUsages};
 
@@ -50,7 +50,7 @@ impl std::fmt::Display for Redraw {
 /// let mut frame = Frame::<World>::new();
 /// let shadows = world.views.get(ViewId::MAIN)?.view.shadows.as_ref().ok_or("a view with shadows")?;
 /// let maps = kept.declare(gpu, &mut frame, ViewId::MAIN, shadows)?.ok_or("something casts")?;
-/// let handles = Handles::for_view(ViewId::MAIN, Extent::FRAME).with(maps_slot(&shadows.settings), maps);
+/// let handles = Handles::for_view(ViewId::MAIN, Extent::FRAME).with_shadow_maps(maps_slot(&shadows.settings), maps);
 /// stages(settings).declare(&mut frame, handles, Target::New)?;
 /// let mut imports = Imports::new();
 /// kept.import(maps, &mut imports);
@@ -98,7 +98,7 @@ impl KeptShadows {
         frame: &mut Frame<W>,
         view: ViewId,
         shadows: &ViewShadows,
-    ) -> Result<Option<Texture>, KeptShadowsError>
+    ) -> Result<Option<ShadowMaps>, KeptShadowsError>
     where
         W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Sized,
     {
@@ -131,13 +131,14 @@ impl KeptShadows {
             (here & bits != 0).then_some(ShadowLayer { layer, only })
         };
         let layers = (0..settings.layers()).filter_map(layer);
-        Ok(draw_maps(frame, view, settings, Some(maps), layers)?)
+        let maps = draw_maps(frame, view, settings, Some(maps), layers)?;
+        Ok(maps.map(|texture| ShadowMaps { texture, view }))
     }
 
     /// Binds the texture to the import returned by [`KeptShadows::declare`].
-    pub fn import(&self, maps: Texture, imports: &mut Imports) {
+    pub fn import(&self, maps: ShadowMaps, imports: &mut Imports) {
         if let Some(held) = &self.0 {
-            imports.texture(maps, &held.texture);
+            imports.texture(maps.texture, &held.texture);
         }
     }
 

@@ -5,6 +5,7 @@ use crate::effects::fog::FogSettings;
 use crate::effects::shadow::ShadowInput;
 use crate::gpu_scene::draw::{SurfaceDraw, SurfaceVariant};
 use crate::gpu_scene::indirect::DrawList;
+use crate::gpu_scene::shadow_views::ShadowMaps;
 use crate::gpu_scene::view::ViewId;
 use crate::light::shading::{AlphaUse, Shading};
 use framegraph::{DeclareError, PassBuilder, Texture, View};
@@ -18,7 +19,7 @@ pub struct BlendedSurfaces {
     /// View to draw.
     pub view: ViewId,
     /// Shadow maps of the view; `None` for no shadows.
-    pub shadow: Option<Texture>,
+    pub shadow: Option<ShadowMaps>,
     /// Radiance behind transmissive surfaces, with all levels written; required if one of them blends.
     pub scene: Option<Texture>,
     /// Shading options.

@@ -50,7 +50,7 @@ pub struct GpuView {
     streamed: Vec<ObjectAttributes>,
     /// Arguments of indirect draws.
     arguments: Buffer,
-    id: ViewId,
+    pub(crate) id: ViewId,
 }
 
 impl GpuView {

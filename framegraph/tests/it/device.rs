@@ -1,0 +1,150 @@
+//! A graph that the device would refuse is an error of the compiler, with pass, resource, value, limit and advice.
+
+use framegraph::file::{GraphFile, Registry};
+use framegraph::*;
+
+/// Compiles a file for WebGPU's baseline.
+fn planned(resources: &str, passes: &str) -> Result<Plan, String> {
+    let text = format!(
+        "(version: 1, frame: (64, 64), resources: [Texture(name: \"screen\", format: Rgba8Unorm, kind: Import(entry: \
+         Undefined, exit: Keep)), {resources}], passes: [{passes}])"
+    );
+    let (mut graph, mut plan, options) = (Graph::new(), Plan::new(), Options::for_frame(64, 64));
+    let file = GraphFile::parse("t.ron", &text).map_err(|e| e.to_string())?;
+    let device = (&Caps::wgpu(), &options);
+    file.plan(&[], &Registry::new(), &mut graph, device, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
+    Ok(plan)
+}
+
+#[test]
+fn every_refusal_names_value_limit_and_advice() {
+    let show = r#"Raster(name: "use", accesses: [Sampled(of: "t"), Color(to: "screen", intent: Overwrite)])"#;
+    let drawn = format!(r#"Raster(name: "c", accesses: [Color(to: "t", intent: ClearColor(0,0,0,1))]), {show}"#);
+    let stored = format!(r#"Compute(name: "c", accesses: [StorageWrite(to: "t", intent: Overwrite)]), {show}"#);
+    let bytes = |access: &str| {
+        format!(
+            r#"Compute(name: "c", accesses: [StorageWrite(to: "b", intent: Overwrite)]),
+               Compute(name: "use", flags: [SideEffect], accesses: [{access}])"#
+        )
+    };
+    let cases = [
+        (
+            r#"Texture(name: "t", format: Rgba8Unorm, samples: 4, layers: 2)"#,
+            drawn.clone(),
+            "4 samples with 2 layers",
+            "use a texture for each layer",
+        ),
+        (
+            r#"Texture(name: "t", format: Rgba8Unorm, samples: 2)"#,
+            drawn.clone(),
+            "2 samples of Rgba8Unorm, the device allows 1 or 4",
+            "use 1 or 4",
+        ),
+        (
+            r#"Texture(name: "t", format: Rgba8Unorm, samples: 8)"#,
+            drawn,
+            "8 samples of Rgba8Unorm, the device allows 1 or 4",
+            "use 1 or 4",
+        ),
+        (
+            r#"Texture(name: "t", format: R16Float)"#,
+            stored.clone(),
+            "does not support R16Float as `storage_write`",
+            "use R32Float",
+        ),
+        (
+            r#"Texture(name: "t", format: Bgra8Unorm)"#,
+            stored.clone(),
+            "does not support Bgra8Unorm as `storage_write`",
+            "use Rgba8Unorm",
+        ),
+        (
+            r#"Texture(name: "t", format: Rgba8Unorm, samples: 4)"#,
+            stored,
+            "4 samples are used as `storage_write`",
+            "resolve it first",
+        ),
+        (
+            r#"Buffer(name: "b", bytes: 1048576)"#,
+            bytes(r#"Uniform(of: "b")"#),
+            "1048576 bytes are bound as `uniform`, the device allows 65536",
+            "declare a range",
+        ),
+        (
+            r#"Buffer(name: "b", bytes: 1024)"#,
+            bytes(r#"Uniform(of: "b", bytes: (4, 64))"#),
+            "bytes from offset 4 are used as `uniform`, the device requires a multiple of 256",
+            "start the range at 0 or 256",
+        ),
+        (
+            r#"Buffer(name: "b", bytes: 7)"#,
+            bytes(r#"StorageRead(of: "b")"#),
+            "7 bytes are used as `storage_write`, the device requires a multiple of 4",
+            "use 8 bytes",
+        ),
+    ];
+    for (resources, passes, wrong, advice) in cases {
+        let found = planned(resources, &passes).map(|_| ()).expect_err(wrong);
+        assert!(found.contains(wrong) && found.contains(advice) && found.contains("resource `"), "{found}");
+    }
+}
+
+#[test]
+fn one_plane_is_not_drawn_while_the_other_is_sampled() {
+    let ds = r#"Texture(name: "ds", format: Depth24PlusStencil8)"#;
+    let clear = r#"Raster(name: "scene", accesses: [Depth(to: "ds", intent: ClearDepthStencil(0, 0))]),"#;
+    let decal = |depth: &str| {
+        format!(
+            r#"{clear} Raster(name: "decal", accesses: [{depth}, Sampled(of: "ds", aspect: Depth),
+               Color(to: "screen", intent: ClearColor(0,0,0,1))])"#
+        )
+    };
+    let written = planned(ds, &decal(r#"Depth(to: "ds", aspect: Stencil, intent: Modify)"#)).map(|_| ());
+    let written = written.expect_err("the stencil plane is written");
+    assert!(written.contains("pass `decal`: resource `ds`: one plane is used as `sampled`"), "{written}");
+    assert!(planned(ds, &decal(r#"DepthReadOnly(of: "ds")"#)).is_ok());
+}
+
+#[test]
+fn an_attachment_viewed_in_another_format_is_not_memoryless() {
+    let passes = r#"Raster(name: "c", accesses: [Color(to: "t", intent: ClearColor(0,0,0,1), view: Rgba8UnormSrgb),
+        Color(to: "screen", intent: Overwrite)])"#;
+    let plan = planned(r#"Texture(name: "t", format: Rgba8Unorm)"#, passes).unwrap();
+    let t = plan.graph().resource_ids().nth(1).unwrap();
+    assert_ne!(plan.resources()[t.index()].placement, Placement::Memoryless);
+    let needs = plan.reasons(Subject::Resource(t)).any(|r| r == Reason::NeedsMemory(MemoryNeed::View));
+    assert!(needs, "{}", dump::text(&plan));
+    let tiler = Caps { memoryless_views: true, ..Caps::wgpu() };
+    let mut other = Plan::new();
+    compile(plan.graph(), &tiler, plan.options(), &mut Scratch::new(), &mut other).unwrap();
+    assert_eq!(other.resources()[t.index()].placement, Placement::Memoryless);
+}
+
+#[test]
+fn a_slice_keeps_the_others() {
+    let mut g = Graph::new();
+    let desc = TextureDesc::new(Extent::absolute(8, 8), Format::Rgba8Unorm).layers(4);
+    let volume = g.texture("volume", TextureDesc { dimension: Dimension::D3, ..desc });
+    let first = g.add_fn("first", |p| p.color(volume.layer(0), Intent::Clear(ClearValue::BLACK))).unwrap();
+    let last = g.add_fn("last", |p| p.color(first.layer(3), Intent::Overwrite)).unwrap();
+    g.export(last).unwrap();
+    let mut plan = Plan::new();
+    compile(&g, &Caps::wgpu(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan).unwrap();
+    let found: Vec<_> = plan.attachments().iter().map(|a| (a.layer, a.load, a.store)).collect();
+    assert_eq!(found, [(0, LoadOp::Clear, StoreOp::Store), (3, LoadOp::DontCare, StoreOp::Store)]);
+}
+
+#[test]
+fn bindings_are_counted() {
+    let textures: String = (0..17).map(|n| format!("Texture(name: \"t{n}\", format: Rgba8Unorm),")).collect();
+    let draws: String = (0..17)
+        .map(|n| format!("Raster(name: \"c{n}\", accesses: [Color(to: \"t{n}\", intent: Overwrite)]),"))
+        .collect();
+    let look = |count: usize| {
+        let reads: String = (0..count).map(|n| format!("Sampled(of: \"t{n}\"),")).collect();
+        format!("{draws} Raster(name: \"use\", accesses: [{reads} Color(to: \"screen\", intent: Overwrite)])")
+    };
+    assert!(planned(&textures, &look(16)).is_ok());
+    let found = planned(&textures, &look(17)).map(|_| ()).expect_err("17 are too many");
+    assert!(found.contains("the pass uses 17 sampled textures, the device allows 16 in a shader stage"), "{found}");
+}
