@@ -23,7 +23,7 @@ EFFECTS
                        cone=on|off (contact shadow of the sun). sao: quality=low|medium|high|ultra, taps=N, turns=N.
                        gtao: slices=N, steps=N, step-power=X, occluders=solid|fading|M (thickness)
   --ssr off|on[:KEY=X,...]  screen-space reflections of the previous frame (off). thickness=M (of surfaces, 0.1),
-                       bias=M (start of rays, 0.01), distance=M (maximum ray length, 3), stride=TEXELS (2),
+                       bias=M (start of rays, 0.01), distance=M (maximum ray length, 3), stride=TEXELS (1; above, blocks are not skipped),
                        roughness=R (maximum roughness, 0.7071)
   --fog off|on[:KEY=X,...]  height fog (off). density=X (at the fog height, in 1/m, 0.1), height=M (0), falloff=X (height
                        falloff, in 1/m, 1), start=M (distance from the eye, 0), cut-off=M (no fog beyond, inf),

@@ -11,7 +11,7 @@ Measures the error and cost of each approximation of the frame on this adapter.
 
     accuracy [--quick] [--technique NAME]… [--scene NAME] [--again] [--out DIR]
     accuracy [--out DIR] --budget-ms MS | --max-error X | --verify N
-    accuracy [--out DIR] --document | --presets FILE.rs
+    accuracy [--out DIR] --document | --presets FILE.rs | --errors
 
 Writes accuracy.json after each technique, so that an interrupted run can resume,
 then accuracy.md and accuracy.html. Each option is timed in 31 frames after 10
@@ -34,6 +34,8 @@ warm-up frames. Times are valid for this adapter only, on an otherwise idle mach
   --document         print accuracy.md from the existing accuracy.json
   --presets FILE.rs  write the presets chosen from the record as the source file
                      that `framegraph-passes` is built with
+  --errors           measure the errors of the options for budgets again, and
+                     keep their times in accuracy.json
   -h, --help         print this help
 ";
 
@@ -49,6 +51,8 @@ pub enum Wanted {
     Measure,
     /// Print the record as a document.
     Document,
+    /// Measure the errors of options for budgets again.
+    Errors,
     /// Write the presets as Rust source.
     Presets(PathBuf),
     /// Choose settings within a budget of time or error.
@@ -111,6 +115,7 @@ impl Args {
                 Long("verify") => args.wanted = Wanted::Verify(parser.value()?.parse()?),
                 Long("scene") => args.scene = Some(scene(&parser.value()?.string()?)?),
                 Long("document") => args.wanted = Wanted::Document,
+                Long("errors") => args.wanted = Wanted::Errors,
                 Long("presets") => args.wanted = Wanted::Presets(parser.value()?.into()),
                 Long("help") | Short('h') => args.wanted = Wanted::Help,
                 other => return Err(other.unexpected()),
@@ -119,7 +124,7 @@ impl Args {
         let other =
             |among: &[&str]| given.iter().filter(|name| among.contains(&name.as_str())).cloned().collect::<Vec<_>>();
         let (kinds, of_measuring) =
-            (other(&["budget-ms", "max-error", "verify", "document", "presets"]), other(&MEASURING));
+            (other(&["budget-ms", "max-error", "verify", "document", "presets", "errors"]), other(&MEASURING));
         match (&kinds[..], &of_measuring[..]) {
             _ if args.wanted == Wanted::Help => {}
             ([kind, second, ..], _) => {
