@@ -130,7 +130,7 @@ pub const GROUPS: [Group; 8] = [
             option("3", |f| f.settings.glass_layers = 3),
         ],
         // Glass behind glass.
-        seen_in: 1.0 / 16.0,
+        seen_in: 1.0 / 8.0,
     },
 ];
 

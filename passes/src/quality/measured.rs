@@ -55,10 +55,12 @@ pub struct MeasuredPair {
     pub squares: f64,
 }
 
-/// Time of an option's own passes in a frame of 1280×720 pixels.
+/// Time of an option's own passes in a frame of a preset.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MeasuredShare {
+    /// Name of the preset, in which the option replaces that of its group.
+    pub preset: String,
     /// Group and option.
     pub option: [String; 2],
     /// Built-in scene in which the passes take the largest share.
@@ -125,9 +127,10 @@ impl Measured {
         own.options.iter().find(|own| own.name == option.name)
     }
 
-    /// Returns the share of a frame that the option's own passes take; 0 if it is not measured.
-    pub fn share(&self, group: &Group, option: &FrameOption) -> f64 {
-        let own = self.shares.iter().find(|own| own.option == [group.name, option.name]);
+    /// Returns the share of a preset's frame that the option's own passes take; 0 if it is not measured.
+    pub fn share(&self, preset: &str, group: &Group, option: &FrameOption) -> f64 {
+        let mut of_preset = self.shares.iter().filter(|own| own.preset == preset);
+        let own = of_preset.find(|own| own.option == [group.name, option.name]);
         own.map_or(0.0, |own| own.share)
     }
 

@@ -18,7 +18,7 @@ use crate::quality::{FrameOption, Group, Measured, MeasuredError};
 pub enum Preset {
     /// For phones.
     Low,
-    /// One sample, a shadow map and ambient occlusion.
+    /// One sample, a shadow map, and ambient occlusion at half resolution.
     Medium,
     /// Four samples, cascades, finer ambient occlusion.
     High,
@@ -78,7 +78,7 @@ impl Preset {
         if self != Self::Ultra {
             for ((group, options), own) in choices.iter().zip(&mut offers.groups) {
                 for (option, offer) in options.iter().zip(own) {
-                    if measured.share(group, option) > Self::MAX_PASSES {
+                    if measured.share(self.name(), group, option) > Self::MAX_PASSES {
                         offer.ms = f64::INFINITY;
                     }
                 }
@@ -159,6 +159,16 @@ mod tests {
             assert!(Preset::ALL[..i].iter().all(|other| other.share() < preset.share()), "{preset:?}");
         }
         assert_eq!(Preset::from_name("best"), None);
+    }
+
+    /// Only ultra has reflections. Other presets have no effect that prevents inlined post-processing.
+    #[test]
+    fn presets_below_ultra_leave_post_processing_inlined() {
+        for preset in Preset::ALL {
+            let settings = preset.frame().settings;
+            assert_eq!(settings.reflections.is_some(), preset == Preset::Ultra, "{preset:?}");
+            assert!(settings.bloom.is_none() && settings.dof.is_none() && settings.taa.is_none(), "{preset:?}");
+        }
     }
 
     #[test]

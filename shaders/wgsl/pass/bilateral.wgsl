@@ -63,7 +63,8 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     let last = vec2<i32>(textureDimensions(occlusion_in)) - 1;
     let step = slope(texel, here);
-    // The distance of two depths a and b is (a - b) · spread / ((a · z - x) · (b · z - x)) (`view_z`).
+    // The distance of two depths a and b, by `view_z`, is
+    // (a - b) · spread / ((a · z - x) · (b · z - x)).
     let row = bilateral.depth;
     let spread = (row.x * row.w - row.y * row.z) / bilateral.threshold_m;
     var sum = middle * bilateral.weights[0].x;

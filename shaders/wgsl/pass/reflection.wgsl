@@ -153,7 +153,7 @@ struct Block {
     leaves: f32,
 }
 
-/// Returns the block of a level at a share of a ray. The last block of a side ends with the picture.
+/// Returns the block of a level at a share of a ray. The last block of a side ends at the border.
 fn block_at(ray: PictureRay, share: f32, level: i32, size: vec2<i32>) -> Block {
     // At a border, the next block: a thousandth of a texel ahead.
     let ahead = ray.start.xy + share * ray.way.xy + 1e-3 * sign(ray.way.xy);
@@ -211,7 +211,8 @@ fn follow_in_blocks(ray: PictureRay, origin: vec3<f32>, normal: vec3<f32>) -> Me
                 let met = structure_position(block.index, depth, settings.projection);
                 let over = place_on(ray, next);
                 if rises_from_plane(dot(normal, met - origin), dot(normal, over - origin)) {
-                    return Meeting(share_at_depth(depth, ray.start.z, ray.way.z, share, next), true);
+                    let hit = share_at_depth(depth, ray.start.z, ray.way.z, share, next);
+                    return Meeting(hit, true);
                 }
             }
         }

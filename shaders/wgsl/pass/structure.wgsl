@@ -5,8 +5,8 @@ import package::lib::depth_normal::continues_ahead;
 import package::lib::depth_pyramid::finer_texel;
 import package::lib::fullscreen::fullscreen_position;
 
-/// Previous level, or the depth of the prepass. Bound as an unfilterable float, because OpenGL cannot load texels of depth
-/// textures.
+/// Previous level, or the depth of the prepass. Bound as an unfilterable float, because OpenGL
+/// cannot load texels of depth textures.
 @group(0) @binding(0) var finer: texture_2d<f32>;
 
 @vertex
@@ -33,9 +33,9 @@ fn finer_depth(texel: vec2<i32>) -> f32 {
     return textureLoad(finer, clamp(texel, vec2<i32>(0), last), 0).r;
 }
 
-/// Returns the change of depth per texel on the surface at `here`, on the side that continues it. 0
-/// if the nearest three texels of that side are not on a line: they are then of other surfaces.
-/// Arguments as for `continues_ahead`.
+/// Returns the change of depth per texel on the side that continues the surface at `here`. Returns
+/// 0 if the texels of that side are not on a line, as they belong to other surfaces. Arguments as
+/// for `continues_ahead`.
 fn slope_at(back: vec2<f32>, here: f32, ahead: vec2<f32>) -> f32 {
     var near = here - back.y;
     var next = back.y - back.x;

@@ -3,7 +3,7 @@
 
 use super::record::{ChoiceRecord, Record};
 use super::statistics::number;
-use framegraph_passes::quality::{Choices, Chosen, Measured, Offers};
+use framegraph_passes::quality::{Choices, Chosen, Measured, MeasuredShare, Offers};
 use framegraph_passes::{Facts, FrameSettings, Preset};
 use std::fmt::Write as _;
 
@@ -98,7 +98,28 @@ pub fn budget(measured: &Measured) -> String {
             let _ = writeln!(text, "| {one} | {other} | {} |", number(pair.squares));
         }
     }
+    text.push_str(&share_rows(measured));
     text.push_str(&preset_rows(&choices, &offers));
+    text
+}
+
+/// Lists the shares of a frame that the own passes of options take.
+fn share_rows(measured: &Measured) -> String {
+    let mut text = String::new();
+    if measured.shares.is_empty() {
+        return text;
+    }
+    let _ = write!(
+        text,
+        "\nPasses that an option adds, as a share of all passes of a preset's frame with this option, in the scene where it is \
+        largest: sums of the shortest times of steps that `render SCENE --preset PRESET --size 640x360 --timing` prints. \
+        Presets below ultra exclude options above {}. Options without a row have not been measured and are not excluded.\n\n\
+        | preset | group | option | scene | share |\n| --- | --- | --- | --- | --- |\n",
+        number(Preset::MAX_PASSES)
+    );
+    for MeasuredShare { preset, option: [group, option], scene, share } in &measured.shares {
+        let _ = writeln!(text, "| {preset} | {group} | {option} | {scene} | {} |", number(*share));
+    }
     text
 }
 

@@ -11,7 +11,7 @@ use framegraph_passes::quality::{
     Bound, Choices, FrameOption, GROUPS, Group, Measured, MeasuredGroup, MeasuredOption, MeasuredPair, Offers, Trial,
     reference, settle,
 };
-use framegraph_passes::{FrameSettings, Preset};
+use framegraph_passes::{Facts, FrameSettings, Preset};
 use glam::Vec3;
 
 /// Scenes for measuring options; sets are tried on the first.
@@ -164,6 +164,26 @@ impl<'a> Bench<'a> {
         }
         self.learn_pairs(&mut measured)?;
         Ok(measured)
+    }
+
+    /// Measures the errors of a record's options again, and keeps their times.
+    ///
+    /// # Errors
+    /// Any error of the device, or an unknown name in the record.
+    pub fn renew_errors(&mut self, measured: &mut Measured) -> Outcome<()> {
+        let choices = measured.choices(&Facts::default(), |option| self.has(option))?;
+        for (own, (_, options)) in measured.groups.iter_mut().zip(&choices) {
+            let scene = SCENES.into_iter().find(|scene| *scene == own.scene).ok_or("a scene of another version")?;
+            for found in &mut own.options {
+                // The device may lack an option of another one's record.
+                if let Some(option) = options.iter().find(|option| option.name == found.name) {
+                    found.codes = self.squares(scene, &with([*option]))?.sqrt();
+                }
+                program::interrupt::check()?;
+            }
+        }
+        measured.pairs.clear();
+        self.learn_pairs(measured)
     }
 
     /// Returns median times of frames in ms, over three rounds in different orders. The finest option of a group is the

@@ -2,11 +2,11 @@
 
 use crate::stage::plan;
 use framegraph::{Caps, Counts, LoadOp, Options, StoreOp, dump};
-use framegraph_passes::Settings;
 use framegraph_passes::effects::depth::structure::Resolution;
 use framegraph_passes::effects::occlusion::OcclusionSettings;
 use framegraph_passes::effects::reflection::ReflectionSettings;
 use framegraph_passes::gpu_scene::shadow_views::{ContactShadows, MomentSettings, ShadowFilter, ShadowSettings};
+use framegraph_passes::{Preset, Settings};
 
 const FRAME: [u32; 2] = [1280, 720];
 
@@ -173,6 +173,17 @@ fn cascades_and_their_filters() {
     assert_eq!(with(blurred), expected);
 }
 
+/// Presets below ultra inline post-processing into the color pass, and draw the scene twice without shadow maps.
+#[test]
+fn presets_inline_post_processing() {
+    for preset in Preset::ALL {
+        let settings = preset.frame().settings;
+        let inlined = u32::from(preset != Preset::Ultra);
+        assert_eq!(counts(settings).inlined, inlined, "{preset:?}");
+        assert!(geometry_passes(settings).len() as u32 + inlined <= 3, "{preset:?}");
+    }
+}
+
 /// Returns the passes of a frame that draw the scene's surfaces, without shadow maps.
 fn geometry_passes(settings: Settings) -> Vec<String> {
     let plan = plan(&settings, &Caps::wgpu(), &Options::for_frame(FRAME[0], FRAME[1]));
@@ -186,8 +197,8 @@ fn geometry_passes(settings: Settings) -> Vec<String> {
     passes.map(|pass| graph.pass_name(pass).to_owned()).collect()
 }
 
-/// Effects that read the depth of the scene share that of the prepass, or draw it once with one sample per texel: the
-/// scene is drawn twice, whichever of them are on. Reflections draw it once more, for normals and roughness.
+/// Effects that read the depth of the scene share that of the prepass, or draw it once with one sample per texel. The
+/// scene is thus drawn twice. Reflections draw it once more, for normals and roughness.
 #[test]
 fn geometry_is_drawn_twice() {
     let half = OcclusionSettings { resolution: Resolution::Half, ..OcclusionSettings::SAO };

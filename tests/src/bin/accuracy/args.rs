@@ -15,7 +15,7 @@ Each option is timed in 31 frames after 10 warm-up frames. Times are valid for t
 machine.";
 
 /// Options of which a run takes one.
-const KINDS: [&str; 5] = ["budget-ms", "max-error", "verify", "document", "presets"];
+const KINDS: [&str; 6] = ["budget-ms", "max-error", "verify", "document", "presets", "errors"];
 
 /// Returns the declaration of all options.
 fn command() -> clap::Command {
@@ -51,6 +51,7 @@ fn command() -> clap::Command {
              are missed",
         )),
         kind(flag("document", "Print accuracy.md from the existing accuracy.json")),
+        kind(flag("errors", "Measure the errors of the options for budgets again, and keep their times in accuracy.json")),
         kind(option(
             "presets",
             "FILE.rs",
@@ -68,6 +69,8 @@ pub enum Wanted {
     Measure,
     /// Print the record as a document.
     Document,
+    /// Measure the errors of options for budgets again.
+    Errors,
     /// Write the presets as Rust source.
     Presets(PathBuf),
     /// Choose settings within a budget of time or error.
@@ -122,6 +125,7 @@ impl Args {
                 "verify" => args.wanted = Wanted::Verify(item.parse("a whole number", |text| text.parse().ok())?),
                 "scene" => args.scene = Some(item.parse(&builtin::NAMES.join(", "), scene)?),
                 "document" => args.wanted = Wanted::Document,
+                "errors" => args.wanted = Wanted::Errors,
                 _ => args.wanted = Wanted::Presets(item.raw().into()),
             }
         }

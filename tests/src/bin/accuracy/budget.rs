@@ -3,7 +3,9 @@
 use framegraph_passes::Facts;
 use framegraph_passes::quality::{Bound, Measured};
 use framegraph_wgpu::{AdapterRequest, Gpu};
+use program::outputs::Outputs;
 use program::progress::Shown;
+use std::path::Path;
 use tests::lab::budget::{Bench, verify};
 use tests::lab::markdown::number;
 use tests::lab::record::Record;
@@ -41,6 +43,18 @@ pub fn chosen(record: &Record, bound: Bound) -> Outcome<()> {
         record.adapter
     ));
     Ok(())
+}
+
+/// Measures the errors of the options in a record again, and writes it with the times it had.
+pub fn renewed(record: &mut Record, file: &Path) -> Outcome<()> {
+    program::interrupt::watch();
+    let gpu = Gpu::open(&AdapterRequest::from_env())?;
+    let studio = Studio::new(&gpu, record.size_px, record.rounds());
+    measured(record)?;
+    if let Some(measured) = &mut record.budget {
+        Bench::new(&studio).renew_errors(measured)?;
+    }
+    Ok(Outputs::one(file, record.json()?.as_bytes())?)
 }
 
 /// Chooses settings for random budgets, then draws and times them and every change of one option.

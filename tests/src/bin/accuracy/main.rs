@@ -53,6 +53,7 @@ fn run(args: &Args) -> Outcome<()> {
             Ok(())
         }
         Wanted::Budget(bound) => budget::chosen(&Record::read(&file)?, *bound),
+        Wanted::Errors => budget::renewed(&mut Record::read(&file)?, &file),
         Wanted::Verify(count) => budget::verified(&Record::read(&file)?, *count),
         Wanted::Presets(source) => {
             let chosen = preset::source(budget::measured(&Record::read(&file)?)?)?;
