@@ -260,6 +260,36 @@ fn what_is_in_focus_stays() -> TestResult {
     Ok(())
 }
 
+/// An anamorphic lens blurs a point into an ellipse of this width and height, at the same light. A circle is the negative
+/// control.
+#[test]
+fn a_squeezed_point_is_an_ellipse() -> TestResult {
+    let Some(gpu) = gpu("a_squeezed_point_is_an_ellipse") else { return Ok(()) };
+    let dot = Image::from_fn(SIZE, |x, y| {
+        DVec3::splat(if (30..34).contains(&x) && (22..26).contains(&y) { 8.0 } else { 0.0 })
+    });
+    // Standard deviation of the light from the middle along both axes, without that of the sharp point.
+    let spread = |image: &Image| {
+        let pixels = || (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+        let of = |(x, y): (u32, u32)| image.at(x.into(), y.into()).x;
+        let whole: f64 = pixels().map(of).sum();
+        let along = |middle: f64, axis: fn((u32, u32)) -> u32| {
+            let variance: f64 = pixels().map(|at| of(at) * (f64::from(axis(at)) + 0.5 - middle).powi(2)).sum();
+            (variance / whole - 1.25).max(0.0).sqrt()
+        };
+        (along(32.0, |(x, _)| x) / along(24.0, |(_, y)| y), whole)
+    };
+    let mut whole = None;
+    for squeeze in [0.5, 1.0, 2.0] {
+        let settings = DofSettings { median: false, squeeze, ..lens(8.0) };
+        let (ratio, light) = spread(&shoot(&gpu, &dot, |_, _| 1e6, &settings)?);
+        assert!((ratio / f64::from(squeeze) - 1.0).abs() < 0.1, "{squeeze}: {ratio}");
+        let circle = *whole.get_or_insert(light);
+        assert!((light / circle - 1.0).abs() < 0.1, "{squeeze}: {light} for {circle}");
+    }
+    Ok(())
+}
+
 /// No circle is larger than 32 pixels, and every pixel is finite: at depth 0 and 1, and for a focus distance below the
 /// focal length.
 #[test]

@@ -192,7 +192,8 @@ impl<W: AsRef<Programs> + AsRef<Views> + ?Sized> Record<W> for DofPass {
         let uniforms = DofUniforms {
             depth_row: projection.depth,
             most_px,
-            per_px: [width, height].map(|side| (side.max(1) as f32).recip()),
+            // Only the gather reads it, as the distance between taps.
+            per_px: [0, 1].map(|axis| own.axes()[axis] / [width, height][axis].max(1) as f32),
             focus_m,
             scale_px,
             tile_texels: f32::from(TILE_PX) / texel_px as f32,

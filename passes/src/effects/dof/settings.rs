@@ -23,6 +23,9 @@ pub struct DofSettings {
     pub focal_length_m: Option<f32>,
     /// Factor on circles of confusion, 0 or more; 0 disables depth of field.
     pub scale: f32,
+    /// Width of a blurred point divided by its height, above 0, as of an anamorphic lens: 1 is a circle. The longer axis
+    /// keeps the size of the circle of confusion. Filament's `cocAspectRatio`.
+    pub squeeze: f32,
     /// Resolution of the gather.
     pub resolution: Resolution,
     /// Maximum radius of foreground circles in pixels, 0 to 32.
@@ -57,6 +60,7 @@ impl DofSettings {
         f_number: 2.8,
         focal_length_m: None,
         scale: 1.0,
+        squeeze: 1.0,
         resolution: Resolution::Half,
         most_before_px: 32.0,
         most_behind_px: 32.0,
@@ -70,6 +74,12 @@ impl DofSettings {
     /// Returns true if anything can be out of focus.
     pub fn is_seen(&self) -> bool {
         self.scale > 0.0 && (self.most_before_px > 0.0 || self.most_behind_px > 0.0)
+    }
+
+    /// Returns the half axes of a blurred point, relative to the radius of the circle of confusion.
+    pub fn axes(&self) -> [f32; 2] {
+        let squeeze = self.squeeze.clamp(0.1, 10.0);
+        [squeeze.min(1.0), squeeze.recip().min(1.0)]
     }
 
     /// Returns the focus distance in meters, and the circle diameter at infinity in pixels, for a picture of this
@@ -104,6 +114,8 @@ impl SettingsTable for DofSettings {
         })
         .about("focal length; `view` derives it from the field of view on 24 mm film"),
         number("scale", "scale", [0.0, 1e3], |s: &mut Self| num(&mut s.scale)).about("factor on circles of confusion"),
+        number("squeeze", "squeeze", [0.1, 10.0], |s: &mut Self| num(&mut s.squeeze))
+            .about("width of a blurred point divided by its height, as of an anamorphic lens"),
         choice("resolution", "resolution", |s: &mut Self| word(&mut s.resolution)).about("resolution of the gather"),
         number("before", "most_before_px", [0.0, 32.0], |s: &mut Self| num(&mut s.most_before_px))
             .about("maximum radius of foreground circles"),
