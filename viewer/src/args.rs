@@ -290,7 +290,7 @@ mod tests {
             ("--caps", "--caps"),
             ("--view picture", "--view picture: expected one of"),
             ("--size 0x4", "--size 0x4: expected"),
-            ("--picture 9000x1", "--picture 9000x1: expected"),
+            ("--headless --plan a.json --out a.png --picture 9000x1", "--picture 9000x1: expected"),
             ("--scale 9", "--scale 9: expected"),
             ("--theme blue", "--theme blue: expected"),
             ("--order best", "declared or optimized"),

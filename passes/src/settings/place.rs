@@ -83,7 +83,7 @@ pub enum Place<'a> {
     Degrees(&'a mut f32),
     /// Numbers separated by `:`. One number sets all three of a color.
     Numbers(&'a mut [f32]),
-    /// One of these numbers.
+    /// A count, with the accepted ones.
     Count(&'a mut u8, &'static [u8]),
     /// A switch with the words for false and true.
     Switch(&'a mut bool, [&'static str; 2]),

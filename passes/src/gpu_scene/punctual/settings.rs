@@ -69,7 +69,7 @@ impl SettingsTable for LightSearch {
     const OPTION: &'static str = "lights";
     const PATH: &'static str = "lights";
     const ABOUT: &'static str =
-        "how shading finds punctual lights; `auto` is `froxels` for 4 or more lights of limited range";
+        "method of finding punctual lights; `auto` is `froxels` for 4 or more lights of limited range";
     const DEFAULT: Self = Self::Auto(FroxelSettings::DEFAULT);
     const METHODS: &'static [(&'static str, Self)] = &[
         ("auto", Self::Auto(FroxelSettings::DEFAULT)),
