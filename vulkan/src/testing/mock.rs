@@ -129,7 +129,7 @@ impl Source {
         for access in own {
             match (access.kind, cx.plan().graph().resources()[access.resource.index()].desc) {
                 (AccessKind::Sampled | AccessKind::SamePixel, Desc::Texture(desc)) => {
-                    source.texture(cx, access, &desc)?
+                    source.texture(cx, access, &desc)?;
                 }
                 (AccessKind::StorageRead | AccessKind::StorageWrite, Desc::Texture(desc)) => {
                     for mip in access.range.mip_range(desc.mip_count(cx.plan().frame())) {
