@@ -35,3 +35,8 @@ pub use gpu::{DeviceFeatures, DeviceQueue, Gpu, GpuDesc, Synchronization};
 pub use imports::Imports;
 pub use resources::MemoryReport;
 pub use views::ViewShape;
+
+/// The guide in `docs/guide`, run as a doc test. Skipped because "the program needs a Vulkan device" if there is none.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/guide/vulkan.md")]
+pub struct Guide;
