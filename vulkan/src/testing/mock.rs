@@ -3,7 +3,8 @@
 //! Each pass reads all of its inputs and writes values that depend on them, on its name and on the position. The
 //! results of a frame are therefore equal for all plans of a graph, if the plans are right.
 
-use super::kit::{Bound, DepthTest, Dispatch, Draw, Kit};
+use super::draw::{Bound, DepthTest, Dispatch, Draw};
+use super::kit::Kit;
 use crate::cx::{Cx, RecordError};
 use crate::views::ViewShape;
 use ash::vk;
