@@ -211,7 +211,7 @@ fn traffic(plan: &Plan, step: StepId, id: ResourceId) -> u64 {
         let in_tile = member.join == Join::SamePixel && is_raster;
         let accesses = plan.graph().accesses_of(member.pass).iter().filter(move |a| a.resource == id);
         // Same-pixel reads of a merged pass stay in the tile already.
-        accesses.filter(move |a| !a.kind.is_attachment() && !(in_tile && a.kind == AccessKind::SamePixel))
+        accesses.filter(move |a| !(a.kind.is_attachment() || in_tile && a.kind == AccessKind::SamePixel))
     });
     read.map(|access| accessed_bytes(plan, access)).fold(attached, u64::saturating_add)
 }

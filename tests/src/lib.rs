@@ -43,18 +43,6 @@ mod guide {
     pub struct Migrating;
     #[doc = include_str!("../../docs/guide/threads.md")]
     pub struct Threads;
-    #[doc = include_str!("../../docs/guide/vulkan.md")]
-    pub struct Vulkan;
-}
-
-/// Returns true if an adapter exists and it is one of Vulkan. Otherwise reports `test` as skipped.
-pub fn has_vulkan(test: &str) -> bool {
-    let vulkan = |gpu: framegraph_wgpu::Gpu| gpu.info().backend == wgpu::Backend::Vulkan;
-    let found = framegraph_wgpu::Gpu::open(&framegraph_wgpu::AdapterRequest::from_env()).is_ok_and(vulkan);
-    if !found {
-        test_report::skip(test, "the program needs a Vulkan device");
-    }
-    found
 }
 
 /// Returns true if an adapter exists. Otherwise reports `test` as skipped.

@@ -6,19 +6,9 @@ use crate::driver::{ImageBarrier, Scope, Thing};
 use crate::error::Error;
 use crate::layouts::parts;
 use crate::run::Run;
-use crate::shape::Part;
+use crate::shape::{Part, clears};
 use ash::vk;
-use framegraph::{Access, Mode, Plan, ResourceId, StepId};
-
-/// Returns `true` if the executor clears the resource with a command of its own in a frame of the plan.
-pub(crate) fn is_cleared(plan: &Plan, id: ResourceId) -> bool {
-    let mut accesses = plan.running().flat_map(|member| plan.graph().accesses_of(member.pass));
-    accesses.any(|access| access.resource == id && clears(access))
-}
-
-fn clears(access: &Access) -> bool {
-    access.mode == Mode::Clear && !access.kind.is_attachment()
-}
+use framegraph::{Access, StepId};
 
 impl Run<'_> {
     /// Clears what the passes of a step declare as cleared, except for attachments, which load operations clear.

@@ -13,7 +13,7 @@ mod create;
 mod record;
 mod submit;
 
-use crate::gpu::{DeviceFeatures, Synchronization};
+use crate::features::{DeviceFeatures, Synchronization};
 use ash::vk;
 pub(crate) use record::{BufferBarrier, Dependencies, ImageBarrier, Scope};
 pub(crate) use submit::{Submission, TimelinePoint};

@@ -8,6 +8,7 @@ mod cx;
 mod driver;
 mod error;
 mod executor;
+mod features;
 mod gpu;
 mod imports;
 mod lanes;
@@ -31,7 +32,13 @@ pub use error::Error;
 #[cfg(feature = "testing")]
 pub use executor::stream;
 pub use executor::{Executor, ExecutorOptions, Exported};
-pub use gpu::{DeviceFeatures, DeviceQueue, Gpu, GpuDesc, Synchronization};
+pub use features::{DeviceFeatures, Synchronization};
+pub use gpu::{DeviceQueue, Gpu, GpuDesc};
 pub use imports::Imports;
 pub use resources::MemoryReport;
 pub use views::ViewShape;
+
+/// The guide in `docs/guide`, run as a doc test. Skipped because "the program needs a Vulkan device" if there is none.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/guide/vulkan.md")]
+pub struct Guide;

@@ -94,7 +94,7 @@ impl Resources {
             for command in commands {
                 match *command {
                     Command::Heap { of_buffers, bytes } => {
-                        made.heap(gpu, plan, commands, of_buffers, bytes, families)?
+                        made.heap(gpu, plan, commands, of_buffers, bytes, families)?;
                     }
                     Command::Create { resource, memory, .. } => {
                         let at_once = shared.iter().any(|other| current(plan, *other) == current(plan, resource));

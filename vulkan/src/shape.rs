@@ -2,7 +2,7 @@
 
 use crate::convert::{buffer_usage, image_usage, vk_format};
 use ash::vk;
-use framegraph::{Desc, Dimension, Kind, Placement, Plan, ResourceId, TextureDesc, Usage};
+use framegraph::{Access, Desc, Dimension, Kind, Mode, Placement, Plan, ResourceId, TextureDesc, Usage};
 
 /// Everything that decides how an object is created.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl Shape {
             srgb_views,
             memoryless: plan.resources()[current.index()].placement == Placement::Memoryless,
             history,
-            cleared: history || crate::clear::is_cleared(plan, id),
+            cleared: history || is_cleared(plan, id),
             families: families.to_vec(),
         }
     }
@@ -56,8 +56,7 @@ impl Shape {
         let (frame, families) = (plan.frame(), families.to_vec());
         let (usage, srgb_views) = (row.usage, row.srgb_views);
         let mut tenants = plan.graph().resource_ids().zip(plan.resources());
-        let cleared =
-            tenants.any(|(id, row)| row.placement == Placement::Slot(slot) && crate::clear::is_cleared(plan, id));
+        let cleared = tenants.any(|(id, row)| row.placement == Placement::Slot(slot) && is_cleared(plan, id));
         Self { desc: row.desc, frame, usage, srgb_views, memoryless: false, history: false, cleared, families }
     }
 
@@ -111,6 +110,17 @@ impl Shape {
             info.sharing_mode(vk::SharingMode::CONCURRENT).queue_family_indices(&self.families)
         })
     }
+}
+
+/// Returns `true` if the executor clears the resource with a command of its own in a frame of the plan.
+fn is_cleared(plan: &Plan, id: ResourceId) -> bool {
+    let mut accesses = plan.running().flat_map(|member| plan.graph().accesses_of(member.pass));
+    accesses.any(|access| access.resource == id && clears(access))
+}
+
+/// Returns `true` for an access that the executor clears with a command of its own.
+pub(crate) fn clears(access: &Access) -> bool {
+    access.mode == Mode::Clear && !access.kind.is_attachment()
 }
 
 /// Returns the resource that a history writes, or the resource itself.

@@ -122,7 +122,7 @@ fn subpass(plan: &Plan, step: StepId, members: &[StepPass], at: usize) -> Subpas
                 shows(attachment, access) && access.range.aspect.selects_plane(format, number.min(format.planes() - 1))
             };
             let written = own.iter().filter(|a| a.kind.is_attachment() && a.mode.writes()).any(|a| on(&a));
-            match (inputs.iter().any(|a| on(a)), written) {
+            match (inputs.iter().any(on), written) {
                 (false, _) => PlaneUse::Step,
                 (true, false) => PlaneUse::Input,
                 (true, true) => PlaneUse::Feedback,

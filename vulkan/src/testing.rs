@@ -3,6 +3,7 @@
 
 mod copies;
 mod device;
+mod draw;
 mod imports;
 mod kit;
 mod memory;
@@ -11,8 +12,9 @@ mod raster;
 mod spirv;
 
 pub use device::{DeviceRequest, OpenError, TestDevice};
+pub use draw::{Bound, DepthTest, Dispatch, Draw};
 pub use imports::{WORD, imports};
-pub use kit::{Bound, DepthTest, Dispatch, Draw, Kit};
+pub use kit::Kit;
 pub use memory::Part;
 pub use mock::Mock;
 pub use spirv::{InputAttachment, spirv};

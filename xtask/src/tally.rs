@@ -273,11 +273,10 @@ mod tests {
             "renderer/src",
             "renderer/tests",
             "scene/src",
-            "tests/src",
             "tests/tests",
             "examples",
             "viewer",
-            "vulkan/tests",
+            "vulkan",
         ];
         let root = crate::workspace::root();
         let mut folders: Vec<_> = rooms.iter().map(|room| root.join(room)).collect();

@@ -3,7 +3,7 @@
 #![allow(unsafe_code, reason = "Vulkan has no safe calls")]
 
 use super::Driver;
-use crate::gpu::Synchronization;
+use crate::features::Synchronization;
 use ash::vk;
 use std::ffi::CString;
 

@@ -2,7 +2,8 @@
 
 #![allow(unsafe_code, reason = "Vulkan has no safe calls")]
 
-use crate::gpu::{DeviceFeatures, DeviceQueue, Gpu, GpuDesc, Synchronization};
+use crate::features::{DeviceFeatures, Synchronization};
+use crate::gpu::{DeviceQueue, Gpu, GpuDesc};
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -3,7 +3,8 @@
 //! Each pass reads all of its inputs and writes values that depend on them, on its name and on the position. The
 //! results of a frame are therefore equal for all plans of a graph, if the plans are right.
 
-use super::kit::{Bound, DepthTest, Dispatch, Draw, Kit};
+use super::draw::{Bound, DepthTest, Dispatch, Draw};
+use super::kit::Kit;
 use crate::cx::{Cx, RecordError};
 use crate::views::ViewShape;
 use ash::vk;
@@ -129,7 +130,7 @@ impl Source {
         for access in own {
             match (access.kind, cx.plan().graph().resources()[access.resource.index()].desc) {
                 (AccessKind::Sampled | AccessKind::SamePixel, Desc::Texture(desc)) => {
-                    source.texture(cx, access, &desc)?
+                    source.texture(cx, access, &desc)?;
                 }
                 (AccessKind::StorageRead | AccessKind::StorageWrite, Desc::Texture(desc)) => {
                     for mip in access.range.mip_range(desc.mip_count(cx.plan().frame())) {

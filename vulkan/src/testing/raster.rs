@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code, reason = "Vulkan has no safe calls")]
 
-use super::kit::{DepthTest, Draw};
+use super::draw::{DepthTest, Draw};
 use crate::cx::Cx;
 use ash::vk;
 

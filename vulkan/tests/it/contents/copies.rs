@@ -89,7 +89,7 @@ impl Frame<'_> {
                     let (from, to) = (source.layout, target.layout);
                     // SAFETY: both images belong to the device, in the layouts of copies, and have these parts.
                     unsafe {
-                        cx.device().cmd_copy_image(cx.commands(), source.image, from, target.image, to, &[region])
+                        cx.device().cmd_copy_image(cx.commands(), source.image, from, target.image, to, &[region]);
                     };
                 }
                 Copy::PatternBuffer { into, bytes } => {
