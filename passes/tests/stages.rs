@@ -64,9 +64,9 @@ const HDR: TextureDesc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
 fn names_are_the_same_whatever_the_settings_are() -> Result<(), StageError> {
     let names = [
         "shadow",
+        "prepass",
         "occlusion",
         "reflection",
-        "prepass",
         "color",
         "scene",
         "transparent",
@@ -127,7 +127,7 @@ fn the_last_picture_goes_into_the_target() -> Result<(), StageError> {
 fn names_that_are_wrong_are_said_with_those_that_are_right() {
     let mut stages = stages(&Settings::DEFAULT);
     let told = stages.insert_after("colour", radiance("glow", HDR)).map(drop).map_err(|e| e.to_string());
-    let expected = "unknown stage `colour`; use one of shadow, occlusion, reflection, prepass, color, scene, transparent, resolve, taa, measure, dof, bloom, post, fxaa, upscale";
+    let expected = "unknown stage `colour`; use one of shadow, prepass, occlusion, reflection, color, scene, transparent, resolve, taa, measure, dof, bloom, post, fxaa, upscale";
     assert_eq!(told, Err(expected.to_owned()));
     let told = stages.replace(radiance("glow", HDR)).map(drop).map_err(|e| e.to_string());
     assert!(told.is_err_and(|told| told.contains("unknown stage `glow`")));
