@@ -49,7 +49,7 @@ pub struct SceneLoop {
 /// Target of the frames.
 #[derive(Debug)]
 enum Screen {
-    Window(WindowSurface),
+    Window(Box<WindowSurface>),
     Texture(wgpu::Texture),
 }
 
@@ -116,7 +116,7 @@ impl SceneLoop {
         let (gpu, surface) = WindowSurface::open(&AdapterRequest::from_env(), window, size_px)?;
         let environment = Sky::default().environment(128)?;
         let lighting = Lighting::with_defaults(&gpu, &environment)?;
-        Self::of(&gpu, scene, lighting, size_px, Screen::Window(surface))
+        Self::of(&gpu, scene, lighting, size_px, Screen::Window(Box::new(surface)))
     }
 
     /// Draws `scene` into a texture of `size_px` pixels on an open device.

@@ -5,7 +5,7 @@
 //! [`Case::check`] compares the results with the f64 mirror. A test of this crate verifies that no function is missing.
 //!
 //! [`all`] covers the f32 build. [`half()`] lists the functions that compute in f16 with
-//! [`Feature::HALF`](crate::Feature::HALF), with their own domains and bounds. A test verifies that all other functions
+//! [`Feature::HALF`](framegraph_shaders::Feature::HALF), with their own domains and bounds. A test verifies that all other functions
 //! have the same text in both builds.
 
 mod ambient;
@@ -44,7 +44,7 @@ pub fn all() -> impl Iterator<Item = &'static Case> {
         .chain(temporal::CASES)
 }
 
-/// Returns the cases of functions that compute in f16 with [`Feature::HALF`](crate::Feature::HALF), for that build.
+/// Returns the cases of functions that compute in f16 with [`Feature::HALF`](framegraph_shaders::Feature::HALF), for that build.
 pub fn half() -> impl Iterator<Item = Case> {
     all().filter_map(|case| {
         let HalfCase { parameters, bound } = case.half?;

@@ -243,9 +243,12 @@ fn attachments(cases: &mut Vec<Case>) {
     let formats = [R8Unorm, Rgba8Unorm, Rg8Unorm, R16Float, R32Float, Rgba16Float, Rgba32Float, Rgb10a2Unorm, R32Uint];
     let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
     for number in 0..300 {
-        let chosen: Vec<_> = (0..8)
-            .filter_map(|slot| (numbers.below(3) != 0).then(|| (slot, formats[numbers.below(formats.len())])))
-            .collect();
+        let mut chosen = Vec::new();
+        for slot in 0..8 {
+            if numbers.below(3) != 0 {
+                chosen.push((slot, formats[numbers.below(formats.len())]));
+            }
+        }
         let name = format!("{number}: {chosen:?}");
         cases.push(Case::new("attachments", name, move |frame| {
             frame.graph_mut().add_fn("case", |pass| {
