@@ -248,8 +248,7 @@ fn views_have_names_and_sizes_of_their_own_and_share_a_shadow_map() -> Result<()
     let half = Extent::Relative { num: 1, den: 2, align: 1 };
     let stages = stages(&Settings::DEFAULT);
     let left = frame.scope("left", |frame| stages.declare(frame, Handles::for_view(ViewId(0), half), Target::New))?;
-    let shadow = left.get(Slot::SHADOW_MAP)?;
-    let right = Handles::for_view(ViewId(1), half).with(Slot::SHADOW_MAP, shadow);
+    let right = Handles::for_view(ViewId(1), half).sharing_shadows(&left);
     let right = frame.scope("right", |frame| stages.declare(frame, right, Target::New))?;
     let graph = frame.graph();
     let expected = [

@@ -31,7 +31,8 @@ fn plans(count: u64) -> impl Iterator<Item = (u64, Plan)> {
         let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
         let mut plan = Plan::new();
         let options = generate::options_of(seed as u32 % 64);
-        let caps = [Caps::wgpu(), Caps::desktop(), Caps { separate_heaps: true, ..Caps::tiler() }];
+        let caps =
+            [Caps::wgpu(), Caps::desktop(), Caps { separate_heaps: true, ..Caps::tiler() }].map(generate::capable);
         compile(&graph, &caps[seed as usize % 3], &options, &mut scratch, &mut plan).ok()?;
         Some((seed, plan))
     })
@@ -134,7 +135,7 @@ fn memory_is_shared_by_what_is_over() -> TestResult {
         let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
         let options = Options { alias: Alias::Off, ..generate::options_of(0) };
         let mut plan = Plan::new();
-        if compile(&graph, &Caps::wgpu(), &options, &mut scratch, &mut plan).is_err() {
+        if compile(&graph, &generate::capable(Caps::wgpu()), &options, &mut scratch, &mut plan).is_err() {
             continue;
         }
         let found = schedule(&plan, &QueueLayout::async_compute(), &costs(&plan, seed))?;

@@ -261,7 +261,7 @@ fn planned(seed: u64, alias: Alias) -> Option<Plan> {
     let graph = generate::graph(&mut Entropy::seeded(seed), &Profile::default());
     let mut plan = Plan::new();
     let options = Options { alias, ..generate::options_of(seed as u32 % 64) };
-    let caps = [Caps::desktop(), Caps::tiler()];
+    let caps = [Caps::desktop(), Caps::tiler()].map(generate::capable);
     compile(&graph, &caps[seed as usize % 2], &options, &mut Scratch::new(), &mut plan).ok()?;
     Some(plan)
 }

@@ -117,7 +117,7 @@ fn features_add_what_they_bind_and_lobes_add_to_the_material() {
         added(Feature::SHADOW_SOFT),
         of_frame(&["local_maps", "shadow", "shadow_depth", "shadow_map", "shadow_sampler"])
     );
-    assert_eq!(added(Feature::CONTACT_SHADOWS), of_frame(&["shadow", "contact_depth"]));
+    assert_eq!(added(Feature::CONTACT_SHADOWS), of_frame(&["contact_depth", "shadow"]));
     assert_eq!(added(Feature::SHADOW_MOMENTS), of_frame(&["local_maps", "shadow", "shadow_moments"]));
     // The cube shares the sampler of the table.
     assert_eq!(added(Feature::ENVIRONMENT_MAP), of_frame(&["specular_map"]));

@@ -10,7 +10,7 @@ fn no_output_has_control_characters() {
         path.display().to_string()
     };
     let device = file("escaped.ron", r#"(version: 1, name: "a\u{1b}[31m")"#);
-    let empty = file("\u{1b}[31m empty.ron", r#"(version: 1, passes: [Raster(name: "p")])"#);
+    let empty = file("\u{1b}[31m empty.ron", r#"(version: 1, passes: [Compute(name: "p")])"#);
     let wrong = file("\u{1b}[31m wrong.ron", "(version: 1, x: 1)");
     let table = file("escaped.csv", "id,lower,upper,size\na\u{1b}[31m,1,2,4\n");
     let cases: [(&[&str], &str); 8] = [
