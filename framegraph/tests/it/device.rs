@@ -2,6 +2,7 @@
 
 use framegraph::file::{GraphFile, Registry};
 use framegraph::*;
+use framegraph_check::check;
 
 /// Compiles a file for WebGPU's baseline.
 fn planned(resources: &str, passes: &str) -> Result<Plan, String> {
@@ -132,6 +133,8 @@ fn a_slice_keeps_the_others() {
     compile(&g, &Caps::wgpu(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan).unwrap();
     let found: Vec<_> = plan.attachments().iter().map(|a| (a.layer, a.load, a.store)).collect();
     assert_eq!(found, [(0, LoadOp::Clear, StoreOp::Store), (3, LoadOp::DontCare, StoreOp::Store)]);
+    let report = check::examine(&plan);
+    assert!(report.is_clean(), "{report}");
 }
 
 #[test]

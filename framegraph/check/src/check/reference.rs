@@ -88,7 +88,7 @@ pub(super) struct Read {
 
 /// The result of interpreting the declared frame.
 pub(super) struct Reference {
-    /// Every read, in declaration order; reads of one access are ordered like [`Subresources::covered`].
+    /// Every read, in declaration order; reads of one access are ordered like [`Subresources::kept`].
     pub(super) reads: Vec<Read>,
     /// The reads of each access of the graph.
     pub(super) of_access: Vec<Range<usize>>,
@@ -138,12 +138,7 @@ impl Reference {
             for (id, access) in ids.zip(graph.accesses_of(pass)) {
                 let start = reads.len();
                 if access.needs_contents() {
-                    reads.extend(parts.covered(access.resource, access.range).map(|part| Read {
-                        pass,
-                        access: id,
-                        part,
-                        value: held[part],
-                    }));
+                    reads.extend(parts.kept(access).map(|part| Read { pass, access: id, part, value: held[part] }));
                 }
                 of_access[id] = start..reads.len();
             }
