@@ -168,6 +168,9 @@ fn keep_input(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Ac
 /// overwrite the other slices of its level, so it changes an unneeded use only if it reads.
 #[inline]
 pub(super) fn use_before(pass: PassId, accesses: &[Access], access: &Access, after: NextUse) -> NextUse {
+    if after == NextUse::Alias {
+        return after;
+    }
     match reads(accesses, access, || after.is_needed()) {
         true => NextUse::Reader(pass),
         false if access.range.slice => after,

@@ -188,6 +188,10 @@ impl Reference {
         for pass in passes {
             demand.take(graph, pass, None, &mut open);
             let ids = graph.passes()[pass.index()].accesses.range().zip(graph.accesses_of(pass));
+            for (id, access) in ids.clone().filter(|(_, a)| a.mode.writes() && graph.has_alias(a.resource)) {
+                let adds = if access.kind == AccessKind::Resolve { averaged(graph, pass, access) } else { Some(id) };
+                demand.take(graph, pass, adds, &mut open);
+            }
             for (_, average) in ids.filter(|(id, a)| a.kind == AccessKind::Resolve && averages(*id)) {
                 demand.take(graph, pass, averaged(graph, pass, average), &mut open);
             }
