@@ -10,9 +10,9 @@ use std::panic::Location;
 impl Graph {
     /// Declares that two imported textures may be bound to one texture.
     ///
-    /// Passes that access one of them count as passes with a side effect that are never merged: they run in declaration
-    /// order, each in its own step, and are never culled. Their attachments are always stored, because a write of one
-    /// import may change the other. Passes declared before and after the call are both affected. Without this
+    /// Passes that access one of them count as passes with a side effect that are never merged. They run in declaration
+    /// order, each in its own step, and are never culled. Attached imports of the pair are always stored, because a
+    /// write of one may change the other. Passes declared before and after the call are both affected. Without this
     /// declaration, a back end refuses to bind one texture to two imports.
     ///
     /// Compilation fails on devices with [`explicit_barriers`](crate::Caps::explicit_barriers), where one texture

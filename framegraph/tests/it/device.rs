@@ -43,9 +43,15 @@ fn every_refusal_names_value_limit_and_advice() {
         ),
         (
             r#"Texture(name: "t", format: Rgba8Unorm, samples: 8)"#,
-            drawn,
+            drawn.clone(),
             "8 samples of Rgba8Unorm, the device allows 1 or 4",
             "use 1 or 4",
+        ),
+        (
+            r#"Texture(name: "t", format: Rgba8Unorm, mips: 9)"#,
+            drawn,
+            "9 levels, but 64x64 texels have at most 7",
+            "use fewer levels, or `TextureDesc::ALL_MIPS` for all (in a file `mips: \"all\"`)",
         ),
         (
             r#"Texture(name: "t", format: R16Float)"#,
@@ -87,6 +93,8 @@ fn every_refusal_names_value_limit_and_advice() {
     for (resources, passes, wrong, advice) in cases {
         let found = planned(resources, &passes).map(|_| ()).expect_err(wrong);
         assert!(found.contains(wrong) && found.contains(advice) && found.contains("resource `"), "{found}");
+        // A sample count is no size.
+        assert!(!found.contains("make it smaller") && !found.contains("too large"), "{found}");
     }
 }
 
