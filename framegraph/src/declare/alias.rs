@@ -44,12 +44,7 @@ impl Graph {
         }
         let tables = self.tables_mut().0;
         tables.aliases.push((a, b));
-        for index in 0..tables.passes.len() {
-            let accesses: Span = tables.passes[index].accesses;
-            if tables.accesses_alias(accesses) {
-                tables.passes[index].flags.set(PassFlags::ALIASED);
-            }
-        }
+        tables.mark_aliased();
         Ok(())
     }
 }
@@ -67,6 +62,15 @@ impl Tables {
         match self.resources[id.index()].kind {
             Kind::Imported { exit: Exit::Keep, .. } => Ok(id),
             _ => Err(fail(DeclareReason::NoAlias, self.named_resource(id))),
+        }
+    }
+
+    /// Sets the flags of declared passes that access an import with an alias.
+    pub(super) fn mark_aliased(&mut self) {
+        for index in 0..self.passes.len() {
+            if self.accesses_alias(self.passes[index].accesses) {
+                self.passes[index].flags.set(PassFlags::ALIASED);
+            }
         }
     }
 

@@ -62,6 +62,21 @@ fn a_declaration_after_the_passes_has_the_same_effect() {
 }
 
 #[test]
+fn forwarding_into_an_alias_orders_the_passes_too() {
+    let mut g = Graph::new();
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+    let [a, b] = ["a", "b"].map(|name| g.import_texture(name, desc, Entry::Defined, Exit::Keep));
+    g.may_alias(a, b).unwrap();
+    let own = g.texture("own", desc);
+    let own = g.add_fn("draw", |p| p.color(own, Intent::Overwrite)).unwrap();
+    let flag = |g: &Graph| g.passes()[0].flags.has(PassFlags::SIDE_EFFECT);
+    assert!(!flag(&g));
+    g.forward(own, a).unwrap();
+    assert!(flag(&g));
+    compiled(&g);
+}
+
+#[test]
 fn aliases_are_two_kept_imports() {
     let mut g = graph(Alias::First);
     let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);

@@ -123,7 +123,7 @@ fn shapes(desc: &Desc) -> Vec<Desc> {
 /// Visits mutants of the memory statistics.
 pub(super) fn memory(m: &mut Mutator<'_>) {
     for (field, edit) in MEMORY_EDITS {
-        m.with(field, 0, |p| edit(&mut p.memory));
+        m.with(field, 0, |p| edit(p.memory));
     }
     let plan = m.plan;
     for step in plan.step_ids().chain([StepId::NONE]) {

@@ -71,7 +71,7 @@ const STEP_EDITS: [fn(&mut Step); 9] = [
 /// Updates `pass_steps` after passes were moved.
 fn renumber(p: &mut PlanArrays<'_>) {
     for (index, step) in p.steps.iter().enumerate() {
-        for member in step.passes.of(&p.step_passes).iter().filter(|m| m.join != Join::Resolve) {
+        for member in step.passes.of(p.step_passes).iter().filter(|m| m.join != Join::Resolve) {
             p.pass_steps[member.pass.index()] = StepId::at(index);
         }
     }
@@ -110,7 +110,7 @@ fn remove_pass(p: &mut PlanArrays<'_>, row: usize) {
     for later in &mut p.steps[step + 1..] {
         later.passes.start = later.passes.start.wrapping_sub(1);
     }
-    if let Some(first) = p.steps[step].passes.of(&p.step_passes).first().copied() {
+    if let Some(first) = p.steps[step].passes.of(p.step_passes).first().copied() {
         let start = p.steps[step].passes.start as usize;
         let join = Join::First;
         p.step_passes[start] = StepPass { join, ..first };
