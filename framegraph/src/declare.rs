@@ -3,6 +3,7 @@
 //! A pass keeps the handles it reads as typed fields, declares its accesses once and returns the handles it wrote. The
 //! declarations are stored in the arrays of [`Graph`]; the compiler sees only those.
 
+mod alias;
 mod forward;
 mod mark;
 

@@ -99,11 +99,14 @@ impl<'g> PassBuilder<'g> {
     /// Panics if a table has grown beyond `u32::MAX` rows, because ids would be ambiguous.
     #[inline]
     pub(crate) fn finish(self) {
-        let Self { tables, name, first, sole, used, flags, kind, location, .. } = self;
+        let Self { tables, name, first, sole, used, mut flags, kind, location, .. } = self;
         let (accesses, versions) = (tables.accesses.len(), tables.versions.len());
         assert!(accesses.max(versions) < u32::MAX as usize, "more than 2^32 - 2 elements in one table");
         let accesses = Span::new(first, accesses);
         let kind = kind.unwrap_or_else(|| inferred_kind(used));
+        if tables.accesses_alias(accesses) {
+            flags.set(PassFlags::ALIASED);
+        }
         tables.passes.push(Declared { name, accesses, kind, flags, sole_color: sole, location });
     }
 

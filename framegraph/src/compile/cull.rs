@@ -160,15 +160,22 @@ fn keep_inputs(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[A
 #[inline(always)]
 fn keep_input(parts: &Parts, needs: &mut [NextUse], pass: PassId, accesses: &[Access], access: &Access) -> NextUse {
     parts.replace(needs, access.resource, access.range, NextUse::is_needed, |need| {
-        use_before(pass, accesses, access, || need.is_needed())
+        use_before(pass, accesses, access, need)
     })
 }
 
-/// Returns the next use of a resource before an access of a kept pass. `after` returns `true` if the contents that the
-/// access leaves are used.
+/// Returns the next use of a resource before an access of a kept pass, from the next use after it. A slice does not
+/// overwrite the other slices of its level, so it changes an unneeded use only if it reads.
 #[inline]
-pub(super) fn use_before(pass: PassId, accesses: &[Access], access: &Access, after: impl FnOnce() -> bool) -> NextUse {
-    if reads(accesses, access, after) { NextUse::Reader(pass) } else { NextUse::Overwritten(pass) }
+pub(super) fn use_before(pass: PassId, accesses: &[Access], access: &Access, after: NextUse) -> NextUse {
+    if after == NextUse::Alias {
+        return after;
+    }
+    match reads(accesses, access, || after.is_needed()) {
+        true => NextUse::Reader(pass),
+        false if access.range.slice => after,
+        false => NextUse::Overwritten(pass),
+    }
 }
 
 /// Returns `true` if the previous contents influence any result of an access.

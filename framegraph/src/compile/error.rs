@@ -163,6 +163,8 @@ error_enum! {
                 None => "use a range with offset and size in multiples of 4",
                 Some(_) => "overwrite it, or use a renderable format",
             };
+        Aliased "two imports may alias, but the device needs the layout of each texture",
+            "declare one import for the texture, and use its handle in all passes";
         TooManyPasses "the graph has too many passes", "split the graph";
     }
 }

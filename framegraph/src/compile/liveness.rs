@@ -18,6 +18,8 @@ pub(crate) enum NextUse {
     Export,
     /// They are imported and must survive the frame.
     Import,
+    /// They are imported, and a pass may read them through another import at any time. Stays the next use.
+    Alias,
     /// Later frames read them.
     History,
     /// No pass reads or overwrites them.
@@ -48,7 +50,7 @@ impl NextUse {
     /// Returns `true` if the contents must be kept.
     #[inline]
     pub(crate) const fn is_needed(self) -> bool {
-        matches!(self, Self::Reader(_) | Self::Export | Self::Import | Self::History)
+        matches!(self, Self::Reader(_) | Self::Export | Self::Import | Self::Alias | Self::History)
     }
 
     /// Returns `true` if a kept pass overwrites the contents before any kept pass reads them.
@@ -63,7 +65,7 @@ impl NextUse {
         match self {
             Self::Reader(p) => Reason::KeptReadBy(resource, p),
             Self::Export => Reason::KeptExport(resource),
-            Self::Import => Reason::KeptImport(resource),
+            Self::Import | Self::Alias => Reason::KeptImport(resource),
             Self::History => Reason::KeptHistory(resource),
             _ => Reason::KeptCullingOff,
         }
@@ -84,7 +86,7 @@ impl NextUse {
         match self {
             Self::Reader(p) => Some(Reason::StoreReadBy(p)),
             Self::Export => Some(Reason::StoreExport),
-            Self::Import => Some(Reason::StoreImport),
+            Self::Import | Self::Alias => Some(Reason::StoreImport),
             Self::History => Some(Reason::StoreHistory),
             _ => None,
         }
@@ -105,6 +107,9 @@ pub(crate) fn uses_at_exit(graph: &Tables, parts: &Parts, measures: &Measures, n
     }
     for export in &graph.exports {
         parts.fill(needs, export.resource, Range::ALL, NextUse::Export);
+    }
+    for import in graph.aliases.iter().flat_map(|(a, b)| [*a, *b]) {
+        parts.fill(needs, import, Range::ALL, NextUse::Alias);
     }
 }
 

@@ -65,7 +65,7 @@ pub(crate) fn stores(
             for access in members.accesses(at) {
                 let (resource, range) = members.resource_range(access);
                 parts.replace(needs, resource, range, NextUse::is_needed, |after| {
-                    use_before(pass, view.graph.accesses_of(pass), access, || after.is_needed())
+                    use_before(pass, view.graph.accesses_of(pass), access, after)
                 });
             }
         }

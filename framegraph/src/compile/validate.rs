@@ -31,6 +31,9 @@ pub(crate) fn validate(
         let reason = CompileReason::TooManyPasses;
         return errors.push(|| CompileError::new(graph, reason, PassId::NONE, ResourceId::NONE));
     }
+    if let (Some((import, _)), true) = (graph.aliases.first(), caps.explicit_barriers) {
+        errors.push(|| CompileError::new(graph, CompileReason::Aliased, PassId::NONE, *import));
+    }
     if graph.contents_uncertain {
         contents(graph, parts, measures, defined, errors);
     }

@@ -169,6 +169,7 @@ impl Tables {
         self.resources[from.index()].current = VersionId::NONE;
         self.forwards.push((from, to));
         self.contents_uncertain = true;
+        self.mark_aliased();
         for pass in &mut self.passes {
             let sole = self.accesses.get(pass.sole_color.index());
             if sole.is_some_and(|a| a.resource == to) {

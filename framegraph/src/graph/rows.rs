@@ -41,6 +41,8 @@ impl PassFlags {
     pub(crate) const RESOLVES: Self = Self(32);
     /// The pass clears a resource. Derived from its accesses.
     pub(crate) const CLEARS: Self = Self(64);
+    /// The pass accesses an import that may alias another one: it keeps its place, and is neither culled nor merged.
+    pub(crate) const ALIASED: Self = Self(Self::SIDE_EFFECT.0 | Self::NEVER_MERGE.0);
 
     /// Returns `true` if every flag of `other` is set.
     #[inline]

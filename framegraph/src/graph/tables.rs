@@ -22,6 +22,8 @@ pub struct Tables {
     pub(crate) notes: Vec<Note>,
     /// Pairs of a forwarded texture, which no longer exists, and the texture it was forwarded to.
     pub(crate) forwards: Vec<(ResourceId, ResourceId)>,
+    /// Pairs of imports that may be bound to one texture.
+    pub(crate) aliases: Vec<(ResourceId, ResourceId)>,
     /// Errors of methods that do not return a `Result`. The compiler reports them.
     pub(crate) errors: Vec<DeclareError>,
     /// An access names part of a resource, or reads contents that no pass of this frame wrote. The validation phase
@@ -46,6 +48,7 @@ impl Tables {
             exports,
             notes,
             forwards,
+            aliases,
             errors,
             contents_uncertain,
             resolves,
@@ -60,6 +63,7 @@ impl Tables {
         exports.clear();
         notes.clear();
         forwards.clear();
+        aliases.clear();
         errors.clear();
         *contents_uncertain = false;
         *resolves = false;
@@ -75,6 +79,7 @@ impl Tables {
         self.byte_ranges.clone_from(&source.byte_ranges);
         self.exports.clone_from(&source.exports);
         self.forwards.clone_from(&source.forwards);
+        self.aliases.clone_from(&source.aliases);
         self.resolves = source.resolves;
     }
 
@@ -201,6 +206,7 @@ impl Tables {
             && self.exports == other.exports
             && self.notes == other.notes
             && self.forwards == other.forwards
+            && self.aliases == other.aliases
             && self.versions == other.versions
             && self.names == other.names
             && self.clears == other.clears

@@ -68,6 +68,7 @@ fn what_is_not_shared_says_that_sharing_is_off() {
         sentences(&plan, "a").into_iter().find(|s| s.starts_with("resource"))
     };
     assert_eq!(place(Alias::Off).as_deref(), Some("resource `a`: not shared because aliasing is disabled"));
+    assert_eq!(Alias::Off.word(), "off");
     assert_eq!(place(Alias::Pool).as_deref(), Some("resource `a`: first resource in its slot"));
 }
 

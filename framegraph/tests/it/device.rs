@@ -2,6 +2,7 @@
 
 use framegraph::file::{GraphFile, Registry};
 use framegraph::*;
+use framegraph_check::check;
 
 /// Compiles a file for WebGPU's baseline.
 fn planned(resources: &str, passes: &str) -> Result<Plan, String> {
@@ -42,9 +43,15 @@ fn every_refusal_names_value_limit_and_advice() {
         ),
         (
             r#"Texture(name: "t", format: Rgba8Unorm, samples: 8)"#,
-            drawn,
+            drawn.clone(),
             "8 samples of Rgba8Unorm, the device allows 1 or 4",
             "use 1 or 4",
+        ),
+        (
+            r#"Texture(name: "t", format: Rgba8Unorm, mips: 9)"#,
+            drawn,
+            "9 levels, but 64x64 texels have at most 7",
+            "use fewer levels, or `TextureDesc::ALL_MIPS` for all (in a file `mips: \"all\"`)",
         ),
         (
             r#"Texture(name: "t", format: R16Float)"#,
@@ -86,6 +93,8 @@ fn every_refusal_names_value_limit_and_advice() {
     for (resources, passes, wrong, advice) in cases {
         let found = planned(resources, &passes).map(|_| ()).expect_err(wrong);
         assert!(found.contains(wrong) && found.contains(advice) && found.contains("resource `"), "{found}");
+        // A sample count is no size.
+        assert!(!found.contains("make it smaller") && !found.contains("too large"), "{found}");
     }
 }
 
@@ -132,6 +141,8 @@ fn a_slice_keeps_the_others() {
     compile(&g, &Caps::wgpu(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan).unwrap();
     let found: Vec<_> = plan.attachments().iter().map(|a| (a.layer, a.load, a.store)).collect();
     assert_eq!(found, [(0, LoadOp::Clear, StoreOp::Store), (3, LoadOp::DontCare, StoreOp::Store)]);
+    let report = check::examine(&plan);
+    assert!(report.is_clean(), "{report}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Integration tests of the compiler with small graphs. Comments derive the plans by hand.
 
+mod aliases;
 mod barriers;
 mod brute_force;
 mod buffers;

@@ -45,6 +45,9 @@ fn declared(ctx: &RuleInput<'_>, step: StepId) {
             ctx.report.violation(Rule::Attachments, place, why);
             continue;
         };
+        let slices = ctx.texture(touch.resource).filter(|t| t.dimension == Dimension::D3);
+        let flat = touch.range.slice || slices.is_none_or(|t| t.slices(attachment.mip.into()) == 1);
+        ctx.report.require(flat, Rule::Attachments, place, "an attachment has several slices, but only one is drawn");
         used[at - start] = true;
         written[at - start] |= touch.access.mode.writes();
         if let Role::Color(slot) = attachment.role {
@@ -117,10 +120,6 @@ fn sizes(ctx: &RuleInput<'_>, step: StepId) {
         let mut found = ctx.texture(resource).map_or(([0; 2], 0, 1), |t| {
             (t.mip_extent(ctx.plan.frame(), attachment.mip.into()), attachment.layers.into(), t.samples)
         });
-        let flat = ctx
-            .texture(resource)
-            .is_none_or(|t| t.dimension != Dimension::D3 || u32::from(t.layers) >> attachment.mip.min(31) <= 1);
-        ctx.report.require(flat, Rule::Attachments, step, "an attachment has several slices, but only one is drawn");
         if resolves::is_target(attachment.role) {
             let why = format_args!("a resolve from {} to {} samples", own.2, found.2);
             ctx.report.require(found.2 == 1 && own.2 > 1, Rule::Resolve, step, why);

@@ -12,8 +12,9 @@
 
 use super::finding::{Place, Rule};
 use super::rule_input::{PlannedAccess, RuleInput};
+use super::subresource::whole_levels;
 use super::tenants::EarlierTenants;
-use framegraph::access::{Access, AccessKind};
+use framegraph::access::{Access, AccessKind, Range};
 use framegraph::barrier::{Barrier, Stages, State};
 use framegraph::graph::PassKind;
 use framegraph::id::{ResourceId, StepId};
@@ -116,16 +117,20 @@ fn on_entry(ctx: &RuleInput<'_>) -> Vec<Sync> {
 
 /// Returns the parts that a barrier covers. Its numbering runs over levels first, then layers, then planes.
 fn covered(ctx: &RuleInput<'_>, barrier: &Barrier) -> Vec<usize> {
-    let (mips, layers) = ctx.parts.counts(barrier.resource);
-    let all = ctx.parts.all(barrier.resource);
-    let planes = all.len() as u32 / (mips * layers);
+    let [mips, layers, planes] = ctx.parts.counts(barrier.resource);
     let end = barrier.first_part.saturating_add(barrier.parts);
     let numbers = barrier.first_part..end.min(mips * layers * planes);
-    let part = |number| {
+    let parts = |number| {
         let (mip, layer, plane) = (number % mips, number / mips % layers, number / (mips * layers));
-        all.start + ((mip * layers + layer) * planes + plane) as usize
+        // A barrier covers all slices of a level. Numbers fit, because the structure was checked.
+        let layer = if layers == 1 { Range::ALL } else { Range { layer: layer as u16, layers: 1, ..Range::ALL } };
+        let range = Range { mip: mip as u8, mips: 1, ..layer };
+        ctx.parts.covered(barrier.resource, range).filter(move |part| {
+            let name = ctx.parts.name(barrier.resource, *part);
+            planes == 1 || name.plane == plane
+        })
     };
-    numbers.map(part).collect()
+    numbers.flat_map(parts).collect()
 }
 
 /// Returns the layout and stages of one access.
@@ -167,7 +172,7 @@ fn needs(ctx: &RuleInput<'_>, step: StepId) -> Vec<PartUse> {
     for (member, touch) in ctx.accesses_by(ctx.plan.passes_of(step)) {
         let (state, stages) = wanted(kind, &touch, ctx.in_tile(step, member, &touch));
         let writes = touch.access.mode.writes();
-        for part in ctx.parts.covered(touch.resource, touch.range) {
+        for part in ctx.parts.covered(touch.resource, whole_levels(touch.range)) {
             let need = needs.entry(part).or_insert(PartUse { part, resource: touch.resource, state, stages, writes });
             // The layout of a storage texture also supports sampling.
             let rank = |writes: bool, state: State| (!writes, state != State::Storage, state);

@@ -171,7 +171,7 @@ fn samples_of(ctx: &RuleInput<'_>, step: StepId, input: ResourceId) -> Vec<Resou
 }
 
 /// Returns `true` if the target of an inlined pass has the shape of its input: one level, layer and sample of the same
-/// size.
+/// size. A slice among others does not fit.
 pub(super) fn same_shape(ctx: &RuleInput<'_>, input: ResourceId, replaced: Replaced) -> bool {
     let (Some(from), Some(to)) = (ctx.texture(input), ctx.texture(replaced.target)) else {
         return false;
@@ -179,6 +179,7 @@ pub(super) fn same_shape(ctx: &RuleInput<'_>, input: ResourceId, replaced: Repla
     let frame = ctx.plan.frame();
     ctx.parts.covered(replaced.target, replaced.range).count() == 1
         && replaced.range.view.is_none()
+        && !replaced.range.slice
         && ctx.parts.all(input).len() == 1
         && to.mip_extent(frame, replaced.range.mip.into()) == from.extent.texels(frame)
         && from.layers == 1

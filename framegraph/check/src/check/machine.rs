@@ -3,7 +3,7 @@
 //! The documentation of the module `check` defines the lattice and the transfer functions.
 
 use super::finding::{Place, Rule, WasteKind};
-use super::memory::Memory;
+use super::memory::{Memory, StoreRecord};
 use super::reference::{Cause, Value, Wanted};
 use super::rule_input::{PlannedAccess, RuleInput};
 use framegraph::id::StepId;
@@ -102,9 +102,11 @@ impl Machine<'_, '_> {
     /// Reports stores that no pass reads, and contents kept or stored again without a use.
     pub(super) fn wasted(&self) {
         let plan = self.ctx.plan;
+        // Passes may read it through another import.
+        let aliased = |record: &StoreRecord| self.ctx.graph.has_alias(plan.attachments()[record.attachment].resource);
         for record in &self.memory.records {
             let (kind, what) = match record.op {
-                _ if !record.readers.is_empty() || record.survived || record.bound => continue,
+                _ if !record.readers.is_empty() || record.survived || record.bound || aliased(record) => continue,
                 StoreOp::Discard => continue,
                 StoreOp::Store => (WasteKind::Store, "stored"),
                 StoreOp::None => (WasteKind::Discard, "kept in memory"),

@@ -28,6 +28,8 @@ pub(super) struct StoreRecord {
     pub(super) overwritten: usize,
     /// Number of parts it covers.
     pub(super) parts: usize,
+    /// For a slice: the source of the contents it replaced. Overwriting the level overwrites these as well.
+    pub(super) replaced: Source,
 }
 
 /// Index of the store record that left contents in memory; `None` for contents not left by an attachment.
@@ -136,8 +138,10 @@ impl Memory {
 
     /// Records that contents were overwritten.
     pub(super) fn overwritten(&mut self, source: Source) {
-        if let Some(source) = source {
+        let mut next = source;
+        while let Some(source) = next {
             self.records[source].overwritten += 1;
+            next = self.records[source].replaced;
         }
     }
 

@@ -88,7 +88,7 @@ pub(super) struct Read {
 
 /// The result of interpreting the declared frame.
 pub(super) struct Reference {
-    /// Every read, in declaration order; reads of one access are ordered like [`Subresources::covered`].
+    /// Every read, in declaration order; reads of one access are ordered like [`Subresources::kept`].
     pub(super) reads: Vec<Read>,
     /// The reads of each access of the graph.
     pub(super) of_access: Vec<Range<usize>>,
@@ -138,12 +138,7 @@ impl Reference {
             for (id, access) in ids.zip(graph.accesses_of(pass)) {
                 let start = reads.len();
                 if access.needs_contents() {
-                    reads.extend(parts.covered(access.resource, access.range).map(|part| Read {
-                        pass,
-                        access: id,
-                        part,
-                        value: held[part],
-                    }));
+                    reads.extend(parts.kept(access).map(|part| Read { pass, access: id, part, value: held[part] }));
                 }
                 of_access[id] = start..reads.len();
             }
@@ -193,6 +188,10 @@ impl Reference {
         for pass in passes {
             demand.take(graph, pass, None, &mut open);
             let ids = graph.passes()[pass.index()].accesses.range().zip(graph.accesses_of(pass));
+            for (id, access) in ids.clone().filter(|(_, a)| a.mode.writes() && graph.has_alias(a.resource)) {
+                let adds = if access.kind == AccessKind::Resolve { averaged(graph, pass, access) } else { Some(id) };
+                demand.take(graph, pass, adds, &mut open);
+            }
             for (_, average) in ids.filter(|(id, a)| a.kind == AccessKind::Resolve && averages(*id)) {
                 demand.take(graph, pass, averaged(graph, pass, average), &mut open);
             }

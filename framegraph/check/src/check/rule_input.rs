@@ -199,7 +199,7 @@ impl<'p> RuleInput<'p> {
         resource: ResourceId,
         range: Range,
     ) -> Option<(usize, &'p Attachment)> {
-        let layers = range.layer_range(self.parts.counts(resource).1);
+        let layers = range.layer_range(self.parts.counts(resource)[1]);
         self.attachments(step).find(|(_, a)| {
             let role = match kind {
                 AccessKind::Color => matches!(a.role, Role::Color(_)),
@@ -249,7 +249,7 @@ impl<'p> RuleInput<'p> {
         resource: ResourceId,
         range: Range,
     ) -> impl Iterator<Item = PlannedAccess> {
-        let (_, count) = self.parts.counts(resource);
+        let [_, count, _] = self.parts.counts(resource);
         let same =
             move |r: Range| (r.mip, r.view, r.layer_range(count)) == (range.mip, range.view, range.layer_range(count));
         self.planned_accesses(member).filter(move |t| {

@@ -8,6 +8,7 @@ use super::rule_input::RuleInput;
 use super::tile::{Cell, Tile, ops};
 use framegraph::id::StepId;
 use framegraph::plan::{Attachment, LoadOp, Role, StoreOp};
+use framegraph::resource::Dimension;
 
 /// Performs the store operations, which determine the contents of memory after the step.
 pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
@@ -16,6 +17,7 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
         let resource = attachment.resource;
         let bound = attachment.role == Role::DepthReadOnly && is_read_beside(ctx, step, attachment);
         let place = (step, resource);
+        let slices = ctx.texture(resource).filter(|t| t.dimension == Dimension::D3);
         for plane in 0..2 {
             let cells = ctx.attached(attachment).filter_map(|part| tile.cell(part).copied());
             let cells: Vec<Cell> = cells.filter(|cell| cell.plane == plane).collect();
@@ -54,6 +56,7 @@ pub(super) fn store(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId
                 bound,
                 overwritten: 0,
                 parts: cells.len(),
+                replaced: slices.and_then(|_| machine.memory.source(cells[0].part)),
             });
             for cell in cells {
                 let value = match store {

@@ -42,9 +42,8 @@ pub(super) fn structure(plan: &Plan, findings: &Findings<'_>) {
     let parts = (!plan.barriers().is_empty()).then(|| Subresources::of_graph(graph, plan.frame()));
     for barrier in plan.barriers() {
         let end = u64::from(barrier.first_part) + u64::from(barrier.parts);
-        let own =
-            parts.as_ref().filter(|_| has_resource(plan, barrier.resource)).map(|p| p.all(barrier.resource).len());
-        let inside = own.is_some_and(|own| end <= own as u64);
+        let own = parts.as_ref().filter(|_| has_resource(plan, barrier.resource)).map(|p| p.counts(barrier.resource));
+        let inside = own.is_some_and(|own| end <= own.into_iter().map(u64::from).product());
         require(inside && barrier.parts > 0, format_args!("{barrier:?} exceeds its resource"));
     }
     for decision in plan.decisions() {

@@ -1,10 +1,11 @@
 //! The oracle's numbering of parts.
 //!
 //! Every level × layer × plane of every resource has the number `first + (mip · layers + layer) · planes + plane`. A
-//! buffer with declared byte ranges has one layer for each section between ends of such ranges.
+//! buffer with declared byte ranges has one layer for each section between ends of such ranges. The slices of a
+//! three-dimensional texture are numbered like layers; numbers of slices that a small level lacks stay unused.
 
 use super::finding::Subresource;
-use framegraph::access::Range;
+use framegraph::access::{Access, Range};
 use framegraph::format::Format;
 use framegraph::graph::Graph;
 use framegraph::id::ResourceId;
@@ -27,6 +28,15 @@ struct Row {
     layers: u32,
     planes: u32,
     format: Option<Format>,
+    /// The layers are slices of a three-dimensional texture: each level has half as many.
+    slices: bool,
+}
+
+impl Row {
+    /// Number of layers of a level.
+    fn layers_of(&self, mip: u32) -> u32 {
+        if self.slices { self.layers.checked_shr(mip).unwrap_or(0).max(1) } else { self.layers }
+    }
 }
 
 impl Subresources {
@@ -47,12 +57,11 @@ impl Subresources {
         let bytes = graph.byte_ranges().iter();
         let bytes = bytes.map(|b| layer(b.resource, b.offset)..layer(b.resource, b.offset + b.bytes)).collect();
         for (id, resource) in graph.resource_ids().zip(graph.resources()) {
-            let mut row = Row { first: total, mips: 1, layers: 1, planes: 1, format: None };
+            let mut row = Row { first: total, mips: 1, layers: 1, planes: 1, format: None, slices: false };
             if let Desc::Texture(texture) = resource.desc {
                 row.mips = texture.mip_count(frame);
-                if texture.dimension == Dimension::D2 {
-                    row.layers = u32::from(texture.layers);
-                }
+                row.layers = texture.slices(0).max(1);
+                row.slices = texture.dimension == Dimension::D3;
                 let both = texture.format.has_depth() && texture.format.has_stencil();
                 row.planes = if both { 2 } else { 1 };
                 row.format = Some(texture.format);
@@ -81,17 +90,21 @@ impl Subresources {
         let mips = range.mip_range(row.mips);
         let named = self.bytes.get(range.bytes.index()).cloned();
         let layers = named.unwrap_or_else(|| range.layer_range(row.layers));
-        // A slice of a three-dimensional texture is a part of its only layer.
-        let layers = if row.layers == 1 { 0..1 } else { layers.start..layers.end.min(row.layers) };
         let mips = mips.start..mips.end.min(row.mips);
         mips.flat_map(move |mip| {
-            layers.clone().flat_map(move |layer| {
+            let layers = layers.start..layers.end.min(row.layers_of(mip));
+            layers.flat_map(move |layer| {
                 let first = row.first + ((mip * row.layers + layer) * row.planes) as usize;
                 let planes = (0..row.planes)
                     .filter(move |plane| row.format.is_none_or(|f| range.aspect.selects_plane(f, *plane)));
                 planes.map(move |plane| first + plane as usize)
             })
         })
+    }
+
+    /// The numbers of the parts whose contents an access reads or keeps: its range, or the whole level of a slice.
+    pub(super) fn kept(&self, access: &Access) -> impl Iterator<Item = usize> + Clone + use<> {
+        self.covered(access.resource, whole_levels(access.range))
     }
 
     /// Level, layer and plane of the part with this number.
@@ -105,11 +118,16 @@ impl Subresources {
         }
     }
 
-    /// Number of levels and layers of a resource.
-    pub(super) fn counts(&self, resource: ResourceId) -> (u32, u32) {
+    /// Number of levels, layers and planes of a resource. The slices of a level are one layer, as for barriers.
+    pub(super) fn counts(&self, resource: ResourceId) -> [u32; 3] {
         let row = self.rows[resource.index()];
-        (row.mips, row.layers)
+        [row.mips, if row.slices { 1 } else { row.layers }, row.planes]
     }
+}
+
+/// Returns the range with all slices of its levels, if it is a slice of a three-dimensional texture.
+pub(super) fn whole_levels(range: Range) -> Range {
+    if range.slice { Range { layer: 0, layers: u16::MAX, slice: false, ..range } } else { range }
 }
 
 #[cfg(test)]
@@ -138,5 +156,19 @@ mod tests {
         assert_eq!(parts.covered(b, Range::ALL).count(), 12);
         let last = Range { mip: 2, mips: 9, ..Range::ALL };
         assert_eq!(parts.covered(b, last).collect::<Vec<_>>(), [9, 10, 11, 12]);
+    }
+
+    #[test]
+    fn every_slice_has_one_number() {
+        let mut graph = Graph::new();
+        let desc = TextureDesc::new(Extent::absolute(8, 8), Format::Rgba8Unorm).mips(3).layers(4);
+        graph.texture("volume", TextureDesc { dimension: Dimension::D3, ..desc });
+        let parts = Subresources::of_graph(&graph, [4, 4]);
+        let (volume, mip) = (ResourceId::at(0), |mip| Range { mip, mips: 1, ..Range::ALL });
+        let slice = Range { layer: 1, layers: 1, slice: true, ..mip(1) };
+        assert_eq!(parts.covered(volume, slice).collect::<Vec<_>>(), [5]);
+        assert_eq!(parts.covered(volume, whole_levels(slice)).collect::<Vec<_>>(), [4, 5]);
+        assert_eq!(parts.covered(volume, mip(2)).collect::<Vec<_>>(), [8]);
+        assert_eq!(parts.counts(volume), [3, 1, 1]);
     }
 }

@@ -5,9 +5,10 @@ use super::machine::Machine;
 use super::memory::Source;
 use super::reference::{Cause, Value};
 use super::rule_input::{PlannedAccess, RuleInput};
-use framegraph::access::{AccessKind, Mode};
+use framegraph::access::{AccessKind, Mode, Range};
 use framegraph::id::{PassId, StepId};
 use framegraph::plan::{Attachment, Join, LoadOp, StepPass, StoreOp};
+use framegraph::resource::Dimension;
 
 /// One part in the tile.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +90,7 @@ fn load(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId) {
                     let exists = machine.memory.exists(resource);
                     ctx.report.require(exists, Rule::NoMemory, (step, resource), "it is loaded, but has no memory");
                     let value = machine.memory.value(resource, part);
-                    machine.loaded.push((index, value));
+                    machine.loaded.push((index, latest_of_level(machine, attachment, part)));
                     value
                 }
                 LoadOp::Clear => Value::Cleared(attachment.clear),
@@ -128,8 +129,12 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
     let access = planned.access;
     let place = (step, pass, access.resource);
     let in_vain = ctx.reference.in_vain[planned.id];
+    if planned.range.slice {
+        keep(machine, tile, (step, pass), planned);
+    }
     for (at, part) in ctx.parts.covered(planned.resource, planned.range).enumerate() {
-        let read = ctx.reads(planned.id).get(at);
+        let reads = ctx.reads(planned.id);
+        let read = if planned.range.slice { reads.iter().find(|r| r.part == part) } else { reads.get(at) };
         let Some(cell) = tile.cell(part) else {
             if let Some(read) = read.filter(|_| access.needs_contents()) {
                 let nothing = Value::Garbage(Cause::NotAttached);
@@ -177,10 +182,43 @@ fn consume(machine: &mut Machine<'_, '_>, tile: &mut Tile, step: StepId, pass: P
             }
             Mode::Overwrite => {}
         }
-        if cell.initial && (!access.needs_contents() || in_vain) {
+        if cell.initial && !planned.range.slice && (!access.needs_contents() || in_vain) {
             machine.memory.overwritten(cell.source);
         }
     }
+}
+
+/// Checks the other slices of a level when one slice is drawn: the tile or memory must have the contents to keep.
+fn keep(machine: &mut Machine<'_, '_>, tile: &mut Tile, (step, pass): (StepId, PassId), planned: &PlannedAccess) {
+    let ctx = machine.ctx;
+    if ctx.reference.in_vain[planned.id] {
+        return;
+    }
+    let own: Vec<_> = ctx.parts.covered(planned.resource, planned.range).collect();
+    for read in ctx.reads(planned.id) {
+        let drawn = tile.cell(read.part).filter(|cell| cell.written).map(|cell| cell.value);
+        if !own.contains(&read.part) && !read.value.is_garbage() {
+            let found = drawn.unwrap_or_else(|| machine.memory.value(planned.resource, read.part));
+            machine.compare(found, read.value, (step, pass, planned.resource).into(), planned, read.part);
+        }
+        if drawn.is_none() {
+            machine.memory.used(machine.memory.source(read.part), pass);
+        }
+    }
+}
+
+/// Returns the value of a part in memory; for a slice, the value that the last pass left in a slice of its level.
+fn latest_of_level(machine: &Machine<'_, '_>, attachment: &Attachment, part: usize) -> Value {
+    let ctx = machine.ctx;
+    let range = Range { mip: attachment.mip, mips: 1, ..Range::ALL };
+    let slices = ctx.texture(attachment.resource).filter(|t| t.dimension == Dimension::D3);
+    let level = slices.into_iter().flat_map(|_| ctx.parts.covered(attachment.resource, range));
+    let values = level.chain([part]).map(|part| machine.memory.value(attachment.resource, part));
+    let position = |value: &Value| match value {
+        Value::Written(pass) => ctx.position[pass.index()],
+        _ => None,
+    };
+    values.max_by_key(position).unwrap_or(Value::Garbage(Cause::NeverWritten))
 }
 
 /// Sets the values that a pass leaves in the tile.

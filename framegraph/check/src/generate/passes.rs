@@ -56,7 +56,8 @@ pub(super) fn filter(world: &mut World<'_, '_>, draft: &mut Draft) {
     let drawn = world.last.clone();
     let inputs = drawn.iter().filter(|(t, r)| {
         let texture = &world.textures[*t];
-        texture.is_defined(*r) && is_color(texture.desc.format)
+        let whole = texture.desc.dimension == Dimension::D2 || r.layers != 1;
+        texture.is_defined(*r) && is_color(texture.desc.format) && whole
     });
     let inputs: Vec<_> = inputs.copied().collect();
     let mut wanted = None;
@@ -105,9 +106,10 @@ pub(super) fn some_target(world: &mut World<'_, '_>, wanted: Option<Shape>) -> (
     (texture, one_level(desc, range))
 }
 
-/// Returns `true` if the first level of the range has several slices, so that it cannot be attached.
+/// Returns `true` if the first level of the range has several slices and the range is none of them, so that it cannot
+/// be attached.
 fn has_slices(desc: TextureDesc, range: Range) -> bool {
-    desc.dimension == Dimension::D3 && u32::from(desc.layers) >> range.mip.min(31) > 1
+    desc.dimension == Dimension::D3 && desc.slices(range.mip.into()) > 1 && range.layers != 1
 }
 
 /// Restricts the range to one level, as an attachment requires.
@@ -188,6 +190,9 @@ fn read(world: &mut World<'_, '_>, draft: &mut Draft, kind: AccessKind) {
     };
     if kind == AccessKind::StorageRead {
         range.view = None;
+    }
+    if world.textures[texture].desc.dimension == Dimension::D3 {
+        (range.layer, range.layers) = (0, u16::MAX); // only attachments select a slice
     }
     let what = What::Texture(texture, range);
     let known = &world.textures[texture];

@@ -17,7 +17,7 @@ pub(super) struct Tex {
     pub(super) writable: bool,
     /// A pass reads it.
     pub(super) read: bool,
-    /// Indexed by `(mip · layers + layer) · 2 + plane`.
+    /// Indexed by `(mip · layers + layer) · 2 + plane`; slices count as layers.
     defined: Vec<bool>,
 }
 
@@ -70,11 +70,10 @@ impl Buf {
 
 impl Tex {
     fn slots(&self, range: Range) -> impl Iterator<Item = usize> + use<> {
-        let (format, layers) = (self.desc.format, self.desc.tracked_layers());
+        let (desc, format, layers) = (self.desc, self.desc.format, self.desc.slices(0));
         let mips = range.mip_range(self.desc.mip_count(FRAME));
-        let of = range.layer_range(layers);
         mips.flat_map(move |mip| {
-            of.clone().flat_map(move |layer| {
+            range.layer_range(desc.slices(mip)).flat_map(move |layer| {
                 let planes = (0..format.planes()).filter(move |p| range.aspect.selects_plane(format, *p));
                 planes.map(move |plane| ((mip * layers + layer) * 2 + plane) as usize)
             })
@@ -169,7 +168,7 @@ impl<'w, 'e> World<'w, 'e> {
     }
 
     fn add(&mut self, handle: Texture, desc: TextureDesc, defined: bool) -> usize {
-        let count = desc.mip_count(FRAME) * desc.tracked_layers() * 2;
+        let count = desc.mip_count(FRAME) * desc.slices(0) * 2;
         self.textures.push(Tex { handle, desc, writable: true, read: false, defined: vec![defined; count as usize] });
         self.textures.len() - 1
     }
@@ -281,6 +280,10 @@ impl<'w, 'e> World<'w, 'e> {
             }
         }
         let layers = if desc.dimension == Dimension::D3 { 0 } else { layers };
+        let slices = if layers == 0 { desc.slices(range.mip.into()) } else { 0 };
+        if attachment && slices > 1 {
+            (range.layer, range.layers) = (self.entropy.below(slices) as u16, 1);
+        }
         match self.entropy.below(3) {
             1 if layers > 0 => {
                 range.layer = self.entropy.below(layers) as u16;

@@ -6,7 +6,8 @@ use crate::generate::{self, Entropy, Profile};
 use framegraph::internals::arrays;
 use framegraph::plan::{Placement, Plan};
 use framegraph::{
-    Alias, Caps, ClearValue, DeclareError, Extent, Format, Graph, Intent, Options, Scratch, TextureDesc, compile,
+    Alias, Caps, ClearValue, DeclareError, Dimension, Extent, Format, Graph, Intent, Options, Scratch, TextureDesc,
+    compile,
 };
 
 /// Returns the seeds of mutated plans: a hundredth of `FRAMEGRAPH_PROPERTY_CASES`.
@@ -103,6 +104,32 @@ fn a_frame_with_one_answer_to_each_question_leaves_no_other() {
     assert!(unknown.is_empty(), "{unknown:#?}");
     assert!(other.len() <= 8, "{other:#?}");
     kill_all(&plan, "plain frame");
+}
+
+#[test]
+fn no_mutant_of_a_plan_with_slices_lives() {
+    let mut g = Graph::new();
+    let desc = TextureDesc::new(Extent::absolute(8, 8), Format::Rgba8Unorm);
+    let volume = g.texture("volume", TextureDesc { dimension: Dimension::D3, ..desc.layers(3) });
+    let screen = g.texture("screen", desc);
+    let declared = (|| {
+        let volume = g.add_fn("first", |p| p.color(volume.layer(0), Intent::Clear(ClearValue::BLACK)))?;
+        let volume = g.add_fn("two", |p| {
+            let volume = p.color(volume.layer(1), Intent::Overwrite)?;
+            p.color(volume.layer(2), Intent::Clear(ClearValue::BLACK))
+        })?;
+        let volume = g.add_fn("again", |p| p.color(volume.layer(0), Intent::Modify))?;
+        let screen = g.add_fn("use", |p| {
+            p.sampled(volume)?;
+            p.color(screen, Intent::Overwrite)
+        })?;
+        g.export(screen)?;
+        Ok::<(), DeclareError>(())
+    })();
+    assert_eq!(declared, Ok(()));
+    for caps in [Caps::wgpu(), Caps::tiler(), Caps::desktop()] {
+        kill_all(&compiled(&g, &caps, &generate::options_of(0)), &caps.name);
+    }
 }
 
 #[test]

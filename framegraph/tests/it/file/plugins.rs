@@ -81,6 +81,27 @@ impl Plugin<Graph> for Blur {
     }
 }
 
+/// Requires a parameter.
+struct Strict;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StrictParams {
+    #[serde(rename = "radius")]
+    _radius: f32,
+}
+
+impl Plugin<Graph> for Strict {
+    fn slots(&self) -> &[PluginSlot] {
+        &[]
+    }
+
+    fn declare(&self, _: &mut Graph, call: &mut Call<'_>) -> Result<(), PluginError> {
+        let StrictParams { .. } = call.params()?;
+        Ok(())
+    }
+}
+
 /// Declares a target slot, but does not write it.
 struct Idle;
 
@@ -99,6 +120,7 @@ fn registry() -> Registry<'static, Graph> {
     assert!(!registry.insert("scene", Scene));
     assert!(!registry.insert("blur", Blur));
     assert!(!registry.insert("idle", Idle));
+    assert!(!registry.insert("strict", Strict));
     registry
 }
 
@@ -193,7 +215,7 @@ fn slots_parameters_and_kinds_are_checked() {
     let plugin = |rest: &str| file(SCREEN, &format!("Plugin(name: \"p\", {rest})"), "");
     let cases = [
         (plugin(r#"kind: "scen""#), "unknown plugin `scen`; did you mean `scene`?"),
-        (plugin(r#"kind: "ssao""#), "unknown plugin `ssao`; use one of `blur`, `idle` and `scene`"),
+        (plugin(r#"kind: "ssao""#), "unknown plugin `ssao`; use one of `blur`, `idle`, `scene` and `strict`"),
         (plugin(r#"kind: "scene""#), "t.ron:6:23: pass `p`: slot `color` of plugin `scene` is not bound; add"),
         (
             plugin(r#"kind: "scene", slots: {"colour": "hdr", "color": "x"}"#),
@@ -220,6 +242,12 @@ fn slots_parameters_and_kinds_are_checked() {
             "pass `p`: plugin `scene`: 9 samples; ask for 4 at most",
         ),
         (plugin(r#"kind: "idle", slots: {"output": "x"}"#), "slot `output` was not written"),
+        // Omitted parameters have no position, so the error points at the plugin, in its own line.
+        (plugin("\n  kind: \"strict\""), "t.ron:6:23: pass `p`: `StrictParams` requires the field `radius`"),
+        (
+            plugin(r#"kind: "blur", slots: {"input": "x", "output": "x"}"#),
+            "the plugin reads what it creates itself; let an earlier entry create it",
+        ),
         (
             file(
                 SCREEN,
@@ -234,6 +262,8 @@ fn slots_parameters_and_kinds_are_checked() {
     for (text, expected) in cases {
         let errors = load(&text).expect_err(&text).to_string();
         assert!(errors.contains(expected), "{text}\n{errors}\nlacks {expected}");
+        let own = expected.contains("reads what it creates itself");
+        assert!(!own || !errors.contains("listed later"), "{errors}");
     }
     assert!(load(&plugin(r#"kind: "idle""#)).is_ok(), "an optional slot may stay unbound");
 }

@@ -247,7 +247,7 @@ impl<'c, 'p> Candidate<'c, 'p> {
     /// Compares an attachment of the step with an access. Returns two flags: same level, layers and view format; some
     /// common layers.
     fn shows(&self, row: &Attachment, access: &Access) -> (bool, bool) {
-        let layers = access.range.layer_range(self.ctx.parts.counts(access.resource).1);
+        let layers = access.range.layer_range(self.ctx.parts.counts(access.resource)[1]);
         let own = layers_of(row);
         let level = row.resource == access.resource && row.mip == access.range.mip;
         let same = own == layers && row.view == access.range.view;

@@ -70,7 +70,8 @@ fn store(ctx: &RuleInput<'_>, step: StepId, attachment: &Attachment, records: &[
     let survived = |why: Wanted| {
         let wanted = ctx.parts.all(attachment.resource);
         let mut wanted = ctx.reference.wanted[wanted].iter();
-        of(StoreOp::Store).any(|r| r.survived) && wanted.any(|w| *w == Some(why))
+        let aliased = ctx.graph.has_alias(attachment.resource);
+        of(StoreOp::Store).any(|r| r.survived || aliased) && wanted.any(|w| *w == Some(why))
     };
     let dropped = attachment.store == StoreOp::Discard || attachment.stencil_store == StoreOp::Discard;
     let discarded = !stored && dropped;

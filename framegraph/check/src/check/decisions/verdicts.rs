@@ -8,6 +8,7 @@ use framegraph::decision::Reason;
 use framegraph::graph::PassFlags;
 use framegraph::id::{PassId, ResourceId};
 use framegraph::options::Order;
+use framegraph::resource::Dimension;
 
 /// Checks that there is one correct verdict, and a row about the order if the pass was moved.
 pub(super) fn verdict(ctx: &RuleInput<'_>, pass: PassId, reasons: &[Reason]) {
@@ -82,6 +83,13 @@ fn stands(ctx: &RuleInput<'_>, pass: PassId, reason: Reason) -> Option<bool> {
         any(resource, &|part| reference.exit[part] == Value::Written(pass) && reference.wanted[part] == Some(why))
     };
     let read_by = |resource, reader| any(resource, &|part| reference.readers(pass, part).any(|p| p == reader));
+    // The log names the next reader of a level, even if a pass in between replaces the slice.
+    let level_read_by = |resource, reader: PassId| {
+        let volume = ctx.texture(resource).is_some_and(|t| t.dimension == Dimension::D3);
+        let reads =
+            |part| ctx.accesses_of(reader).any(|(_, a)| a.needs_contents() && ctx.parts.kept(a).any(|p| p == part));
+        volume && reader > pass && any(resource, &reads)
+    };
     let unread = |part| reference.readers(pass, part).next().is_none();
     Some(match reason {
         Reason::KeptSideEffect => kept && ctx.flag(pass, PassFlags::SIDE_EFFECT),
@@ -93,7 +101,9 @@ fn stands(ctx: &RuleInput<'_>, pass: PassId, reason: Reason) -> Option<bool> {
         Reason::CulledNoOutput => !kept && !ctx.graph.accesses_of(pass).iter().any(|a| a.mode.writes()),
         // No pass reads or overwrites it.
         Reason::CulledUnread(r) => !kept && any(r, &|part| unread(part) && !overwrites(ctx, pass, part, |_| true)),
-        Reason::CulledReaderCulled(r, reader) => !kept && !runs(reader) && read_by(r, reader),
+        Reason::CulledReaderCulled(r, reader) => {
+            !kept && !runs(reader) && (read_by(r, reader) || level_read_by(r, reader))
+        }
         Reason::CulledOverwritten(r, writer) => {
             !kept && any(r, &|part| unread(part) && overwrites(ctx, pass, part, |p| p == writer))
         }
@@ -108,12 +118,13 @@ fn keeps_itself(ctx: &RuleInput<'_>, pass: PassId) -> bool {
     ctx.flag(pass, PassFlags::SIDE_EFFECT) || writes.any(needed)
 }
 
-/// Returns `true` if a later pass for which `chosen` is true overwrites a part without using its contents.
+/// Returns `true` if a later pass for which `chosen` is true overwrites a part without using its contents. One slice
+/// overwrites no level.
 fn overwrites(ctx: &RuleInput<'_>, pass: PassId, part: usize, chosen: impl Fn(PassId) -> bool) -> bool {
     let later = (pass.index() + 1..ctx.graph.passes().len()).map(PassId::at);
     later.filter(|p| chosen(*p)).any(|p| {
         ctx.accesses_of(p).any(|(id, a)| {
-            let adds = a.needs_contents() && !ctx.reference.in_vain[id];
+            let adds = a.range.slice || a.needs_contents() && !ctx.reference.in_vain[id];
             a.mode.writes() && !adds && ctx.covered(a).any(|q| q == part)
         })
     })
