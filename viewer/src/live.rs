@@ -7,7 +7,7 @@
 //! | `capture.rs`, `factors.rs`, `camera.rs` | exposure, lens, light and animation; edited materials; the interactive camera |
 //! | `frame.rs` | the frame, executed repeatedly |
 //! | `settings_panel.rs`, `file_request.rs` | state of the settings panel; file dialogs that panels request |
-//! | `drawing.rs` | when and on which thread frames are drawn |
+//! | `driving.rs`, `drawing.rs` | when and on which thread frames are drawn, and the state of that |
 //! | `times.rs` | frame times for the views |
 //! | `preview.rs`, `bisecting.rs` | contents of textures; bisection of debug modes |
 //! | `panel/` | the panels |
@@ -16,6 +16,7 @@ pub mod bisecting;
 pub mod camera;
 pub mod capture;
 mod drawing;
+mod driving;
 pub mod factors;
 pub mod file_request;
 pub mod frame;

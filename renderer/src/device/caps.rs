@@ -28,6 +28,18 @@ pub(crate) fn query(gpu: &Gpu) -> Caps {
     }
 }
 
+impl Gpu {
+    /// Returns the capabilities of the device for the compiler. The first call queries the driver, and draws two texels
+    /// if it offers multiview ([`Gpu::max_attached_layers`]).
+    pub fn caps(&self) -> Caps {
+        self.caps_ref().clone()
+    }
+
+    pub(crate) fn caps_ref(&self) -> &Caps {
+        self.caps.get_or_init(|| query(self))
+    }
+}
+
 /// Converts wgpu's uses of a format.
 fn uses(format: Format, features: Features, offered: TextureFormatFeatures) -> FormatCaps {
     let TextureFormatFeatures { allowed_usages: allowed, flags } = offered;

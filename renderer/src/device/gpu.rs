@@ -3,7 +3,6 @@
 #[cfg(not(target_arch = "wasm32"))]
 use crate::device::adapter::{AdapterRequest, adapters, rank};
 use crate::device::adapter::{describe, is_software};
-use crate::device::caps::query;
 use crate::device::error::{DeviceError, DeviceErrors, ErrorScopes, Watch};
 use crate::device::format::texture_format;
 use crate::device::open_error::OpenError;
@@ -41,7 +40,7 @@ pub struct Gpu {
     /// True if errors outside of scopes are stored in `errors`.
     handled: bool,
     waits: Arc<atomic::AtomicU64>,
-    caps: Arc<OnceLock<Caps>>,
+    pub(super) caps: Arc<OnceLock<Caps>>,
     view_formats: bool,
     formats: Arc<[OnceLock<TextureFormatFeatures>; Format::ALL.len()]>,
     pub(super) attached_layers: Arc<OnceLock<u32>>,
@@ -208,16 +207,6 @@ impl Gpu {
     /// Returns whether the adapter is a software renderer.
     pub fn is_software(&self) -> bool {
         is_software(&self.info)
-    }
-
-    /// Returns the capabilities of the device for the compiler. The first call queries the driver, and draws two texels
-    /// if it offers multiview ([`Gpu::max_attached_layers`]).
-    pub fn caps(&self) -> Caps {
-        self.caps_ref().clone()
-    }
-
-    pub(crate) fn caps_ref(&self) -> &Caps {
-        self.caps.get_or_init(|| query(self))
     }
 
     /// Returns what the device can do with a format. The driver is queried once per format. Empty if the format needs a

@@ -128,9 +128,9 @@ fn no_change_of_a_chosen_frame_has_less_error() -> Result<(), Box<dyn std::error
 #[test]
 fn invalid_options_are_reported() {
     for (args, words) in [
-        (&["--technique"][..], "missing argument"),
-        (&["--budget-ms", "-1"], "not a number of at least 0"),
-        (&["--scene", "sepia"], "unknown built-in scene"),
+        (&["--technique"][..], "missing NAME"),
+        (&["--budget-ms", "-1"], "a number of at least 0"),
+        (&["--scene", "sepia"], "--scene sepia: expected"),
         (&["--frobnicate"], "--frobnicate"),
         (&["--document", "--out", "nowhere"], "nowhere/accuracy.json"),
     ] {

@@ -1,35 +1,18 @@
-//! When and on which thread the live frame is drawn.
-//!
-//! A frame is drawn by a thread of its own, because creating its pipelines may take seconds. The panels wait for it for
-//! some milliseconds. If it takes longer, they show the last picture and the progress.
+//! State of drawing the live frame: the thread that works on it, and the last picture.
 
 use super::bisecting::Bisecting;
 use super::frame::Running;
-use super::preview::{Found, read};
-use super::{Live, times};
-use crate::job::{Handle, Job};
-use crate::plan_data::PlanData;
-use crate::session::Session;
+use super::preview::Found;
+use crate::job::Job;
 use egui::TextureId;
 use framegraph_wgpu::inspect::Inspector;
-use framegraph_wgpu::read_texture;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-/// Interval between two updates of the times, in seconds.
-const TIMES_S: f32 = 0.5;
-/// Maximum time that panels wait for a frame.
-const PATIENCE: Duration = Duration::from_millis(25);
-/// Time after which a busy device is asked again.
-const BUSY: Duration = Duration::from_millis(15);
-/// Size of the frame before the viewport was first shown.
-const SIZE_PX: [u32; 2] = [1280, 720];
 
 /// Time after which work on a frame is shown with its progress.
 const LONG: Duration = Duration::from_millis(150);
 
 /// Result of work on the frame.
-enum Done {
+pub(super) enum Done {
     /// It was drawn.
     Drawn(Result<(), String>),
     /// A texture was read.
@@ -49,24 +32,24 @@ pub struct Copied {
 }
 
 /// Work that returns the frame with the result.
-type Work = Job<(Running, Done)>;
+pub(super) type Work = Job<(Running, Done)>;
 
 /// State of drawing.
 #[derive(Default)]
 pub(super) struct Drawing {
     /// The frame while another thread works on it, and when that began.
-    job: Option<(Work, Instant)>,
+    pub job: Option<(Work, Instant)>,
     /// Last picture: egui's id and the size in pixels.
-    picture: Option<(TextureId, [u32; 2])>,
+    pub picture: Option<(TextureId, [u32; 2])>,
     /// Copy of the last picture of a frame with a device of its own.
-    copy: Option<Copied>,
-    copying: Option<Job<Option<([u32; 2], Vec<u8>)>>>,
+    pub copy: Option<Copied>,
+    pub copying: Option<Job<Option<([u32; 2], Vec<u8>)>>>,
     /// The viewport was shown since the last frame of the window.
-    shown: bool,
+    pub shown: bool,
     /// Waits for every frame.
-    blocking: bool,
+    pub blocking: bool,
     /// The user stopped the creation of pipelines.
-    stopped: bool,
+    pub stopped: bool,
 }
 
 impl Drawing {
@@ -93,224 +76,5 @@ impl Drawing {
     pub fn restarted(&self) -> Self {
         let Self { picture, shown, blocking, .. } = *self;
         Self { picture, shown, blocking, ..Self::default() }
-    }
-}
-
-impl Live {
-    /// Waits for every frame, as tests and pictures need.
-    pub fn wait_for_frames(&mut self) {
-        self.drawing.blocking = true;
-    }
-
-    /// Returns whether every frame is waited for.
-    pub fn is_blocking(&self) -> bool {
-        self.drawing.blocking
-    }
-
-    /// Draws frames on another thread, as windows need; the default.
-    pub fn draw_in_background(&mut self) {
-        self.drawing.blocking = false;
-    }
-
-    /// Returns whether a frame should be drawn.
-    pub fn wants_frame(&self) -> bool {
-        let loaded = self.running.is_some() || self.drawing.job.is_some();
-        loaded && (self.left > 0 || self.continuous || self.options.playing)
-    }
-
-    /// Returns the time after which the next frame may be drawn: a moment if the device or the thread is busy.
-    pub fn next_frame(&self) -> Duration {
-        let waits = self.drawing.copying.is_some() || self.running.as_ref().is_none_or(Running::is_busy);
-        if waits && !self.drawing.blocking { BUSY } else { Duration::ZERO }
-    }
-
-    /// Returns egui's id and the size of the last picture; `None` before the first frame.
-    pub fn picture(&self) -> Option<(TextureId, [u32; 2])> {
-        self.drawing.picture
-    }
-
-    /// Returns whether the frame has a device of its own.
-    pub fn has_own_device(&self) -> bool {
-        self.screen.apart
-    }
-
-    /// Returns the copy of the last picture, if the frame has a device of its own.
-    pub fn copied_picture(&self) -> Option<&Copied> {
-        self.drawing.copy.as_ref()
-    }
-
-    /// Draws the frame at the size of the viewport if required, and passes its plan and times to the session.
-    pub fn draw(&mut self, size_px: [u32; 2], session: &mut Session) {
-        self.drawing.shown = true;
-        self.draw_at(size_px, session);
-    }
-
-    /// Draws the frame if the viewport was not shown, at its last size. Returns whether more frames are required.
-    pub fn draw_hidden(&mut self, session: &mut Session) -> bool {
-        if std::mem::replace(&mut self.drawing.shown, false) {
-            return false;
-        }
-        let size_px = if self.size_px.contains(&0) { SIZE_PX } else { self.size_px };
-        self.draw_at(size_px, session);
-        self.wants_frame()
-    }
-
-    fn draw_at(&mut self, size_px: [u32; 2], session: &mut Session) {
-        if !self.wants_frame() || size_px.contains(&0) {
-            return;
-        }
-        let Some(running) = &mut self.running else { return };
-        if !self.drawing.blocking && (running.is_busy() || self.drawing.copying.is_some()) {
-            return;
-        }
-        if let Some(rig) = &self.rig {
-            running.rig.clone_from(rig);
-        }
-        // Until new light is available, draw with the existing light.
-        let lit = running.loaded.light_settings;
-        let mut drawn = self.document().clone();
-        drawn.frame.settings.shading.bands = lit.image.bands;
-        drawn.frame.settings.shading.table = lit.dfg.visibility;
-        self.left = self.left.saturating_sub(1);
-        let options = self.options.clone();
-        self.work("compiling pipelines", session, move |running, handle| {
-            let mut progress = |done, total| handle.step(done, total);
-            Done::Drawn(running.draw(size_px, &drawn, &options, &mut progress))
-        });
-    }
-
-    /// Reads the texture of the preview if its selection, or with *live* the frame, changed.
-    pub fn inspect(&mut self, session: &mut Session) {
-        let Some(running) = &self.running else { return };
-        let frame = running.plans() ^ (u64::from(running.drawn()) << 20);
-        let Some((target, inspector)) = self.preview.begin(running, frame) else { return };
-        let mut inspector = inspector;
-        self.work("reading a texture", session, move |running, _| {
-            let found = read(running, &mut inspector, target);
-            Done::Read(Box::new((inspector, found)))
-        });
-    }
-
-    /// Draws the frame in each debug mode and compares the pictures.
-    pub fn bisect(&mut self, mut bisecting: Bisecting, session: &mut Session) {
-        self.bisecting = None;
-        self.work("comparing debug modes", session, move |running, handle| {
-            Done::Bisected(bisecting.run(running, handle).map(|()| Box::new(bisecting)))
-        });
-    }
-
-    /// Lends the frame to another thread and waits for a moment; with [`Live::wait_for_frames`], works on this thread.
-    fn work(
-        &mut self,
-        doing: &str,
-        session: &mut Session,
-        work: impl FnOnce(&mut Running, &Handle) -> Done + Send + 'static,
-    ) {
-        let Some(mut running) = self.running.take() else { return };
-        if self.drawing.blocking {
-            let done = work(&mut running, &Handle::default());
-            return self.take_done(running, done, session);
-        }
-        let wake = self.wake.clone();
-        let job = Job::start(
-            doing,
-            move || wake(),
-            move |handle| {
-                let done = work(&mut running, handle);
-                (running, done)
-            },
-        );
-        self.drawing.job = Some((job, Instant::now()));
-        self.collect(session, PATIENCE);
-    }
-
-    /// Takes the frame back from the thread that works on it. Waits at most the given time.
-    pub(super) fn collect(&mut self, session: &mut Session, at_most: Duration) {
-        if let Some(copied) = self.drawing.copying.as_ref().and_then(|job| job.wait(Duration::ZERO)) {
-            let made = self.drawing.copy.as_ref().map_or(0, |copy| copy.made) + 1;
-            let copied = copied.map(|(size_px, rgba8)| Copied { size_px, rgba8, made });
-            (self.drawing.copying, self.drawing.copy) = (None, copied.or(self.drawing.copy.take()));
-        }
-        let Some((job, _)) = &self.drawing.job else { return };
-        if let Some((running, done)) = job.wait(at_most) {
-            self.drawing.job = None;
-            self.take_done(running, done, session);
-        }
-    }
-
-    /// Copies the picture of a frame with a device of its own, on another thread.
-    fn copy(&mut self) {
-        let Some(running) = self.running.as_ref().filter(|_| self.screen.apart) else { return };
-        let (Some(texture), Some((_, size_px))) = (running.picture_texture().cloned(), running.picture()) else {
-            return;
-        };
-        let (gpu, wake) = (self.screen.gpu.clone(), self.wake.clone());
-        self.drawing.copying = Some(Job::start(
-            "copying a picture",
-            move || wake(),
-            move |_| read_texture(&gpu, &texture).ok().map(|pixels| (size_px, pixels.rgba8())),
-        ));
-    }
-
-    fn take_done(&mut self, running: Running, done: Done, session: &mut Session) {
-        self.drawing.picture = running.picture();
-        self.running = Some(running);
-        let stopped = std::mem::replace(&mut self.drawing.stopped, false);
-        match done {
-            Done::Drawn(result) => {
-                if stopped && self.history.undo() {
-                    self.again();
-                }
-                if let Err(error) = result {
-                    if self.refused.as_ref() != Some(&error) {
-                        session.say(error.clone());
-                    }
-                    (self.refused, self.left) = (Some(error), 0);
-                    return;
-                }
-                self.clock.tick(Instant::now());
-                self.copy();
-                self.report(session);
-            }
-            Done::Read(read) => {
-                let (inspector, found) = *read;
-                self.preview.take(inspector, found);
-            }
-            Done::Bisected(result) => {
-                match result {
-                    Ok(bisecting) => self.bisecting = Some(*bisecting).filter(Bisecting::is_done),
-                    Err(error) => session.say(error),
-                }
-                self.again();
-            }
-        }
-    }
-
-    /// Passes plan and times to the session if it shows this frame.
-    fn report(&mut self, session: &mut Session) {
-        let Some(running) = &self.running else { return };
-        let shows = session.is_live() || session.plan.is_none();
-        if shows && running.plans() != self.reported_plans {
-            let name = format!("live frame, {}", running.loaded.name);
-            let drawn = (self.history.now().clone(), self.options.modes.clone());
-            let changed = self.reported_plans > 0 && drawn != self.drawn_with;
-            match PlanData::of(running.plan(), &name) {
-                Ok(plan) => {
-                    let (planner, base) = running.planner(self.history.now(), &self.options.modes);
-                    session.show_live(planner, base, Arc::new(plan), changed);
-                }
-                Err(error) => session.say(error.to_string()),
-            }
-            self.reported_plans = running.plans();
-            self.drawn_with = drawn;
-            // Times of the previous plan do not match the new one.
-            self.times_at = None;
-        }
-        if shows && self.times_at.is_none_or(|at| at.elapsed().as_secs_f32() >= TIMES_S) {
-            self.times_at = Some(Instant::now());
-            if let Some(trace) = running.frames().executor().timing().trace() {
-                session.take_times(times::of(trace));
-            }
-        }
     }
 }

@@ -20,8 +20,19 @@ fn views_are_written_as_svg() {
     let (frame, other) = (case("filament"), case("forward"));
     for view in ["graph", "timeline", "memory", "bandwidth", "inspector", "diff"] {
         let out = folder.join(format!("{view}.svg"));
-        let args =
-            ["--headless", "--view", view, "--plan", shown(&frame), "--against", shown(&other), "--out", shown(&out)];
+        let args = [
+            "--headless",
+            "--view",
+            view,
+            "--caps",
+            "wgpu-native",
+            "--plan",
+            shown(&frame),
+            "--against",
+            shown(&other),
+            "--out",
+            shown(&out),
+        ];
         let (code, _, message) = run(&args);
         assert_eq!(code, Some(0), "{message}");
         let text = std::fs::read_to_string(&out).expect("the file is there");

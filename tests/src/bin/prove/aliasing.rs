@@ -4,7 +4,7 @@ use crate::document::Document;
 use crate::frames::{self, FRAME, Shape};
 use crate::table::{Table, excess, percent};
 use framegraph::{Alias, Caps, Effort, Options, Placement, Plan, Scratch, compile};
-use framegraph_check::check;
+use framegraph_check::{check, generate};
 use std::time::Instant;
 
 /// Graphs of each shape in the quick run.
@@ -78,7 +78,7 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
     let mut table = Table::new(&columns);
     let (mut scratch, mut plan, mut wrong) = (Scratch::new(), Plan::new(), 0);
     for shape in Shape::ALL {
-        for caps in [Caps::desktop(), Caps::tiler()] {
+        for caps in [Caps::desktop(), Caps::tiler()].map(generate::capable) {
             let mut sums: [Sum; WAYS.len()] = Default::default();
             for seed in 0..graphs {
                 document.at("memory", seed, graphs);
@@ -137,7 +137,7 @@ pub fn large(document: &mut Document) {
         Table::new(&["shape", "device", "resources", "plans", "at the peak", "proved", "median ms", "longest ms"]);
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
     for shape in Shape::ALL {
-        for caps in [Caps::desktop(), Caps::tiler()] {
+        for caps in [Caps::desktop(), Caps::tiler()].map(generate::capable) {
             let (mut sum, mut times) = (Sum::default(), Vec::new());
             for seed in 0..LARGE_GRAPHS {
                 document.at("160 resources", seed, LARGE_GRAPHS);

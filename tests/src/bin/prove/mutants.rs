@@ -1,6 +1,7 @@
 //! Mutants of valid plans, which the checker must reject.
 
 use crate::document::Document;
+use crate::oracle::DEVICES;
 use crate::table::{Table, percent};
 use framegraph::{Caps, Plan, Scratch, compile};
 use framegraph_check::generate::{self, Entropy, Profile, options_of};
@@ -20,7 +21,7 @@ pub fn section(document: &mut Document, plans: usize, note: &str) {
     for seed in 0..plans {
         document.at("mutants", seed, plans);
         let graph = generate::graph(&mut Entropy::seeded(seed as u64), &profile);
-        let caps = Caps::preset(Caps::PRESETS[seed % Caps::PRESETS.len()]).unwrap_or_default();
+        let caps = generate::capable(Caps::preset(DEVICES[seed % DEVICES.len()]).unwrap_or_default());
         // Coprime to the number of combinations, so that every combination occurs.
         let options = options_of(seed as u32 * 7);
         compile(&graph, &caps, &options, &mut scratch, &mut plan)

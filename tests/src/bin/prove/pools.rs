@@ -4,6 +4,7 @@ use crate::document::Document;
 use crate::frames::{self, FRAME, Shape};
 use crate::table::Table;
 use framegraph::{Alias, Caps, Desc, Extent, Format, Options, Placement, Plan, ResourceId, Scratch, StepId, compile};
+use framegraph_check::generate;
 
 /// Maximum number of members of a class for brute force. Larger classes are compared to the maximum number alive at the
 /// same time, a lower bound.
@@ -59,7 +60,7 @@ pub fn section(document: &mut Document, graphs: usize, note: &str) {
     let mut table = Table::new(&columns);
     let (mut scratch, mut plan) = (Scratch::new(), Plan::new());
     for shape in Shape::ALL {
-        for caps in [Caps::wgpu(), Caps::desktop()] {
+        for caps in [Caps::wgpu(), Caps::desktop()].map(generate::capable) {
             let [mut classes, mut shared, mut forced, mut counted, mut worse] = [0; 5];
             for seed in 0..graphs {
                 document.at("pools", seed, graphs);

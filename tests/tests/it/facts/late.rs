@@ -198,6 +198,8 @@ fn a_slow_crossing_neither_flickers_nor_waits() -> TestResult {
     let Some(gpu) = gpu("a_slow_crossing_neither_flickers_nor_waits") else { return Ok(()) };
     let crossing = |remembers: bool| -> Result<Vec<Decision>, Box<dyn std::error::Error>> {
         let mut row = row(&gpu, "ball")?;
+        // The first query of the capabilities draws a picture and waits for it.
+        gpu.caps();
         let (asked, waited) = (glowing(), gpu.waits());
         let mut decided = Vec::new();
         for frame in 0..64_u8 {
