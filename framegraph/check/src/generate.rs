@@ -137,6 +137,7 @@ pub fn capable(caps: Caps) -> Caps {
     Caps {
         formats: FormatTable::desktop(),
         max_attached_layers: 2048,
+        max_sampled_textures: 64,
         max_storage_textures: 16,
         clears_to_zero: true,
         clears_to_value: true,

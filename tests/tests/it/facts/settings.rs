@@ -29,9 +29,15 @@ fn the_document_names_every_field() -> TestResult {
     let fields: Vec<&str> = fields.filter(|name| name.chars().all(|c| c.is_ascii_lowercase() || c == '_')).collect();
     assert!(fields.len() > 60, "{fields:?}");
     for field in fields {
-        let named = [format!("`{field}`"), format!(".{field}`"), format!("{field}: ")]
-            .iter()
-            .any(|name| DOCUMENT.contains(name));
+        let named = [
+            format!("`{field}`"),
+            format!("`{field}."),
+            format!(".{field}`"),
+            format!(".{field}."),
+            format!("{field}: "),
+        ]
+        .iter()
+        .any(|name| DOCUMENT.contains(name));
         assert!(named, "docs/reference/settings.md does not name {field}");
     }
     Ok(())
