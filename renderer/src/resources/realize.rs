@@ -108,6 +108,7 @@ impl Realized {
         } else {
             self.realize_anew(plan, from)?;
         }
+        from.imports.check_shared(plan)?;
         let changing = std::mem::take(&mut self.changing);
         let earlier = |resource: &ResourceId| match plan.graph().resources()[resource.index()].kind {
             Kind::HistoryPrevious { current, age } => Some((current, age)),
