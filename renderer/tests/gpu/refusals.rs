@@ -336,7 +336,8 @@ fn a_texture_behind_two_imports_is_refused_unless_they_may_alias() -> TestResult
             }
             let target = graph.texture("target", desc);
             let declared = |p: &mut framegraph::PassBuilder<'_>| {
-                (p.sampled(read)?, p.sampled(other)?);
+                p.sampled(read)?;
+                p.sampled(other)?;
                 p.color(target, Intent::Overwrite)
             };
             let target = frame.add_fn("look", declared, |_, (), cx| fill_full(cx, RED))?;
