@@ -1,6 +1,6 @@
 //! Command line of `viewer`.
 
-use framegraph::Order;
+use framegraph::{Caps, Order};
 use program::clap::{self, ArgAction};
 use program::cli::{self, Parsed, argument, flag, option};
 use std::ffi::OsString;
@@ -53,7 +53,7 @@ fn command() -> clap::Command {
         option(
             "caps",
             "DEVICE",
-            "Device for graphs: desktop, tiler, mali, adreno, apple, wgpu (default), wgpu-native, or a FILE.ron",
+            format!("Device for graphs: {}, or a FILE.ron that describes one (wgpu)", Caps::PRESETS.join(", ")),
         ),
         option("size", "WxH", "Frame size in texels; default: the size in the file, else 1920x1080"),
         option("set", "FEATURE=on|off", "Enable or disable a feature of the graph; repeatable").action(ArgAction::Append),

@@ -1,7 +1,7 @@
 //! Command line of `plan`.
 
 use crate::queues;
-use framegraph::Order;
+use framegraph::{Caps, Order};
 use framegraph_queues::QueueLayout;
 use program::budget::Budget;
 use program::clap::{self, ArgAction};
@@ -103,7 +103,7 @@ fn command() -> clap::Command {
         option(
             "caps",
             "DEVICE",
-            "desktop, tiler, mali, adreno, apple, wgpu (default), wgpu-native, or a FILE.ron that describes a device",
+            format!("{}, or a FILE.ron that describes a device (wgpu)", Caps::PRESETS.join(", ")),
         ),
         option("size", "WxH", "Frame size in texels; default: the size in the file, else 1920x1080"),
         option("set", "FEATURE=on|off", "Enable or disable a feature of the file; repeatable").action(ArgAction::Append),

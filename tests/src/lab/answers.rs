@@ -111,9 +111,9 @@ fn share_rows(measured: &Measured) -> String {
     }
     let _ = write!(
         text,
-        "\nPasses that an option adds, as a share of all passes of a preset's frame with this option, in the scene where it is \
-        largest: sums of the shortest times of steps that `render SCENE --preset PRESET --size 640x360 --timing` prints. \
-        Presets below ultra exclude options above {}. Options without a row have not been measured and are not excluded.\n\n\
+        "\nShare of a frame that the passes of an option take. The frame is that of a preset with this option, in the scene \
+        where the share is largest. Times are the shortest of each step, as printed by \
+        `render SCENE --preset PRESET --size 640x360 --timing`. Presets below ultra exclude options above {}. Options without a row have not been measured and are not excluded.\n\n\
         | preset | group | option | scene | share |\n| --- | --- | --- | --- | --- |\n",
         number(Preset::MAX_PASSES)
     );

@@ -18,8 +18,8 @@ fn apart(a: &[u8], b: &[u8]) -> f64 {
     (squares / a.len() as f64).sqrt()
 }
 
-/// Surfaces, and the sky behind fog with the environment's color, look equal for all storage formats. So do surfaces
-/// whose diffuse light is the last level of the cube. Reading RGBM without decoding would differ by dozens of steps.
+/// Surfaces, and the sky behind fog with the environment's color, look equal for all storage formats. Surfaces whose
+/// diffuse light is the last level of the cube look equal too. Reading RGBM without decoding would differ by dozens of steps.
 #[test]
 fn pictures_are_the_same_by_every_format_and_by_the_cube() -> TestResult {
     const TEST: &str = "pictures_are_the_same_by_every_format_and_by_the_cube";

@@ -5,6 +5,7 @@ use crate::effects::Effects;
 use crate::grade::Grade;
 use crate::load::Loaded;
 use crate::shadows::Shadows;
+use framegraph::Caps;
 use framegraph_passes::effects::exposure::Measurement;
 use framegraph_passes::feature_culling::{EnvironmentSummary, SceneSummary, decide};
 use framegraph_passes::gpu_scene::view::ViewSettings;
@@ -55,8 +56,11 @@ pub fn options() -> Vec<Arg> {
         option(
             "what-if",
             "DEVICE",
-            "Compare the plan's counts with those on another device: desktop, tiler, wgpu, or a FILE.ron that \
-             describes one (docs/reference/graph-format.md)",
+            format!(
+                "Compare the plan's counts with those on another device: {}, or a FILE.ron that describes one \
+                 (docs/reference/graph-format.md)",
+                Caps::PRESETS.join(", ")
+            ),
         ),
         option(
             "turntable",

@@ -21,28 +21,6 @@ fn the_examples_of_the_document_load() -> TestResult {
     Ok(())
 }
 
-/// The document lists every field of a complete file.
-#[test]
-fn the_document_names_every_field() -> TestResult {
-    let text = Preset::Ultra.frame().to_ron()?;
-    let fields = text.lines().filter_map(|line| line.trim().split_once(": ")).map(|(name, _)| name);
-    let fields: Vec<&str> = fields.filter(|name| name.chars().all(|c| c.is_ascii_lowercase() || c == '_')).collect();
-    assert!(fields.len() > 60, "{fields:?}");
-    for field in fields {
-        let named = [
-            format!("`{field}`"),
-            format!("`{field}."),
-            format!(".{field}`"),
-            format!(".{field}."),
-            format!("{field}: "),
-        ]
-        .iter()
-        .any(|name| DOCUMENT.contains(name));
-        assert!(named, "docs/reference/settings.md does not name {field}");
-    }
-    Ok(())
-}
-
 /// The document's row of each preset matches the code.
 #[test]
 fn the_document_has_the_presets() {
