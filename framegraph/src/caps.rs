@@ -157,10 +157,8 @@ impl Caps {
                 && (format.is_depth_stencil() || other.channels() >= format.channels())
                 && other.block_bytes() >= format.block_bytes()
         };
-        // A normalized format has no values above 1.
-        let normalized = |format: Format| format!("{format:?}").contains("norm");
         let cost = |other: &Format| {
-            let differs = normalized(*other) != normalized(format);
+            let differs = other.is_normalized() != format.is_normalized();
             (differs, other.is_srgb() != format.is_srgb(), other.block_bytes())
         };
         Format::ALL.into_iter().filter(fits).min_by_key(cost)

@@ -133,6 +133,38 @@ impl Format {
         }
     }
 
+    /// Returns `true` if the values of the format are integers that stand for 0 to 1 or −1 to 1.
+    pub const fn is_normalized(self) -> bool {
+        use Format::*;
+        matches!(
+            self,
+            R8Unorm
+                | R8Snorm
+                | Rg8Unorm
+                | Rg8Snorm
+                | Rgba8Unorm
+                | Rgba8UnormSrgb
+                | Rgba8Snorm
+                | Bgra8Unorm
+                | Bgra8UnormSrgb
+                | Rgb10a2Unorm
+                | Depth16Unorm
+                | Bc1RgbaUnorm
+                | Bc1RgbaUnormSrgb
+                | Bc3RgbaUnorm
+                | Bc3RgbaUnormSrgb
+                | Bc4RUnorm
+                | Bc5RgUnorm
+                | Bc7RgbaUnorm
+                | Bc7RgbaUnormSrgb
+                | Etc2Rgb8Unorm
+                | Etc2Rgba8Unorm
+                | Astc4x4Unorm
+                | Astc4x4UnormSrgb
+                | Astc8x8Unorm
+        )
+    }
+
     /// Size of one component in the tile, in bytes: WebGPU's "render target component alignment". Attachments start at
     /// a multiple of it.
     pub const fn tile_component_bytes(self) -> u32 {

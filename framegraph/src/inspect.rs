@@ -63,5 +63,7 @@ impl Tables {
         self.passes.truncate(passes);
         self.exports.clear();
         self.passes.iter_mut().for_each(|pass| pass.flags.unset(PassFlags::SIDE_EFFECT));
+        // Passes over imports that may alias keep their order.
+        self.mark_aliased();
     }
 }

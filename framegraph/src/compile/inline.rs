@@ -8,6 +8,7 @@
 use super::attachment_set::AttachmentSet;
 use super::join::Candidate;
 use super::steps::{InlinedInto, ResourceRange, range_in_plan};
+use super::validate::fits_shader;
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
 use crate::graph::{PassFlags, Tables};
@@ -134,6 +135,12 @@ pub(crate) fn inlinable(
         return Err(Refusal::SampledElsewhere);
     }
     let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
+    // One shader binds the resources of the producer and of all its epilogues, except the value between them.
+    let inlined = members.iter().filter(|m| m.join == crate::plan::Join::Inlined).map(|m| m.pass);
+    let shader = inlined.chain([producer, candidate.pass]).flat_map(|pass| graph.accesses_of(pass));
+    if !fits_shader(graph, candidate.caps, shader.filter(|a| a.resource != intermediate)) {
+        return Err(Refusal::TooManyBindings);
+    }
     // The only uses may be the inlined read and the draws of the step.
     let inside = count_inside(graph, members, intermediate);
     if uses.access_counts[intermediate.index()] != inside + 1 {

@@ -220,6 +220,9 @@ causes! {
         "resolve with the average, or keep the full-screen pass";
     /// An epilogue records no commands, so the side effect would be lost.
     SideEffect "side_effect", "the consumer has a side effect", "move the side effect to another pass";
+    /// The epilogue is part of the producer's shader.
+    TooManyBindings "too_many_bindings", "together they exceed the bindings of a shader stage",
+        "combine textures as layers of one texture, or keep the full-screen pass";
 }
 
 causes! {

@@ -66,7 +66,7 @@ impl Tables {
     }
 
     /// Sets the flags of declared passes that access an import with an alias.
-    pub(super) fn mark_aliased(&mut self) {
+    pub(crate) fn mark_aliased(&mut self) {
         for index in 0..self.passes.len() {
             if self.accesses_alias(self.passes[index].accesses) {
                 self.passes[index].flags.set(PassFlags::ALIASED);

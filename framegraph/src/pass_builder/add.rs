@@ -114,7 +114,9 @@ impl PassBuilder<'_> {
         if desc.kind == AccessKind::Color {
             let slot = u32::from(desc.slot);
             self.colors = self.colors.max(slot + 1);
-            self.sole = if alone && allowed.has(Kinds::ONE_PART) && !range.slice { access } else { AccessId::NONE };
+            // Another slot than the first counts as several attachments.
+            let sole = alone && slot == 0 && allowed.has(Kinds::ONE_PART) && !range.slice;
+            self.sole = if sole { access } else { AccessId::NONE };
         }
         let (writer, reader, allowed) = (self.pass, PassId::NONE, allowed.union(Kinds::DEFINED));
         self.tables.resources[resource.index()].current = version;

@@ -159,3 +159,74 @@ fn bindings_are_counted() {
     let found = planned(&textures, &look(17)).map(|_| ()).expect_err("17 are too many");
     assert!(found.contains("the pass uses 17 sampled textures, the device allows 16 in a shader stage"), "{found}");
 }
+
+/// An epilogue is part of its producer's shader, so both share the bindings of a stage.
+#[test]
+fn an_epilogue_counts_among_the_bindings_of_its_producer() {
+    let inlined = |count: usize| {
+        let mut g = Graph::new();
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        let mut draw = |name: String| {
+            let texture = g.texture(&name, desc);
+            g.add_fn(&name, |p| p.color(texture, Intent::Overwrite)).unwrap()
+        };
+        let read: Vec<Texture> = (0..count).map(|n| draw(format!("t{n}"))).collect();
+        let look = draw("look".into());
+        let (hdr, screen) = (g.texture("hdr", desc), g.texture("screen", desc));
+        let hdr = g
+            .add_fn("scene", |p| {
+                p.takes_epilogue();
+                read.iter().try_for_each(|texture| p.sampled(*texture).map(drop))?;
+                p.color(hdr, Intent::Overwrite)
+            })
+            .unwrap();
+        let screen = g
+            .add_fn("grade", |p| {
+                p.pointwise();
+                p.same_pixel(hdr)?;
+                p.sampled(look)?;
+                p.color(screen, Intent::Overwrite)
+            })
+            .unwrap();
+        g.export(screen).unwrap();
+        let mut plan = Plan::new();
+        compile(&g, &Caps::wgpu(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan).unwrap();
+        let report = check::examine(&plan);
+        assert!(report.is_clean(), "{report}");
+        let refused =
+            plan.decisions().iter().any(|d| matches!(d.reason, Reason::NotInlined(_, Refusal::TooManyBindings)));
+        (plan.counts().inlined, refused)
+    };
+    assert_eq!((inlined(15), inlined(16)), ((1, false), (0, true)));
+}
+
+/// A device without storage in raster passes refuses it for textures as for buffers.
+#[test]
+fn storage_in_a_raster_pass_needs_the_device() {
+    let texture = r#"Texture(name: "s", format: R32Float)"#;
+    let buffer = r#"Buffer(name: "s", bytes: 64)"#;
+    let pass = r#"Raster(name: "c", accesses: [StorageWrite(to: "s", intent: Overwrite), Color(to: "screen", intent: Overwrite)])"#;
+    for resource in [texture, buffer] {
+        let plan = planned(resource, pass).unwrap();
+        let caps = Caps { raster_storage: false, ..Caps::wgpu() };
+        let told = compile(plan.graph(), &caps, plan.options(), &mut Scratch::new(), &mut Plan::new());
+        let told = told.expect_err("the device has no storage in raster passes").to_string();
+        assert!(told.contains("pass `c`") && told.contains("resource `s`"), "{told}");
+    }
+}
+
+/// A color attachment in slot 7 needs eight slots, alone as among others.
+#[test]
+fn unused_slots_count_for_a_single_attachment() {
+    let mut g = Graph::new();
+    let texture = g.texture("t", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm));
+    let drawn = g.add_fn("draw", |p| p.color_at(7, texture, Intent::Overwrite)).unwrap();
+    g.export(drawn).unwrap();
+    let options = Options::for_frame(8, 8);
+    let told = |max_color_attachments| {
+        let caps = Caps { max_color_attachments, ..Caps::wgpu() };
+        compile(&g, &caps, &options, &mut Scratch::new(), &mut Plan::new()).map_err(|errors| errors.to_string())
+    };
+    assert_eq!(told(8), Ok(()));
+    assert!(told(4).is_err_and(|told| told.contains("8 color attachments")), "{:?}", told(4));
+}

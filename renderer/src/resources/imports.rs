@@ -1,7 +1,7 @@
 //! Imports: textures and buffers of the application, bound to a graph for one frame.
 
 use crate::named::Named;
-use framegraph::{Buffer, Desc, Dimension, Format, Graph, Kind, Plan, ResourceId, Texture};
+use framegraph::{Buffer, Desc, Dimension, Format, Graph, Plan, ResourceId, Texture};
 use wgpu::TextureDimension;
 
 use crate::device::format::{buffer_usages, joined, texture_format, texture_usages};
@@ -184,34 +184,6 @@ impl Imports {
             Some(mismatch) => Err(ImportError::Differs { resource: Named::resource(plan, resource), mismatch }),
             None => Ok((texture, lifetime)),
         }
-    }
-
-    /// Refuses a texture behind two imports if a pass writes one of them, unless the graph declares that they may alias.
-    ///
-    /// Imports of one texture that passes only read are allowed: a default texture may serve several of them.
-    pub(crate) fn check_shared(&self, plan: &Plan) -> Result<(), ImportError> {
-        if self.textures.len() < 2 {
-            return Ok(());
-        }
-        let graph = plan.graph();
-        let used = |r: &ResourceId| !plan.resources()[r.index()].first.is_none();
-        let imported = |r: &ResourceId| matches!(graph.resources()[r.index()].kind, Kind::Imported { .. });
-        let written = |resource| {
-            let kept = graph.pass_ids().filter(|pass| !plan.is_culled(*pass));
-            kept.flat_map(|pass| graph.accesses_of(pass)).any(|a| a.resource == resource && a.mode.writes())
-        };
-        for resource in graph.resource_ids().filter(imported).filter(used) {
-            let Some((texture, _)) = self.texture_of(graph, resource) else { continue };
-            let later = graph.resource_ids().skip(resource.index() + 1).filter(imported).filter(used);
-            for other in later {
-                let same = self.texture_of(graph, other).is_some_and(|(bound, _)| bound == texture);
-                if same && !graph.are_aliases(resource, other) && (written(resource) || written(other)) {
-                    let [resource, other] = [resource, other].map(|r| Named::resource(plan, r));
-                    return Err(ImportError::Shared { resource, other });
-                }
-            }
-        }
-        Ok(())
     }
 
     /// Returns the texture bound to a resource of `graph`, without checks.

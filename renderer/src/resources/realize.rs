@@ -3,9 +3,10 @@
 use crate::device::gpu::Gpu;
 use crate::execute::error::ExecuteError;
 use crate::frame_key::FrameKey;
+use crate::named::Named;
 use crate::placed::arenas::{Arena, Arenas};
 use crate::resources::history::{Declared, Earlier, Histories};
-use crate::resources::imports::{Imports, Lifetime};
+use crate::resources::imports::{ImportError, Imports, Lifetime};
 use crate::resources::no_memory::NoMemory;
 use crate::resources::physical::{PhysicalBufferDesc, PhysicalTextureDesc};
 use crate::resources::pool::Pool;
@@ -108,7 +109,6 @@ impl Realized {
         } else {
             self.realize_anew(plan, from)?;
         }
-        from.imports.check_shared(plan)?;
         let changing = std::mem::take(&mut self.changing);
         let earlier = |resource: &ResourceId| match plan.graph().resources()[resource.index()].kind {
             Kind::HistoryPrevious { current, age } => Some((current, age)),
@@ -123,7 +123,34 @@ impl Realized {
             let physical = self.previous(plan, current, age, from.histories);
             self.set(*resource, physical);
         }
+        self.check_shared(plan, &changing)?;
         (self.changing, self.compilation) = (changing, plan.compilation());
+        Ok(())
+    }
+
+    /// Refuses a texture behind two imports if a pass writes one of them, unless the graph declares that they may alias.
+    ///
+    /// Imports of one texture that passes only read are allowed: a default texture may serve several of them.
+    fn check_shared(&self, plan: &Plan, changing: &[ResourceId]) -> Result<(), ImportError> {
+        let graph = plan.graph();
+        let bound = |r: &ResourceId| match &self.resources[r.index()] {
+            Physical::Texture { texture, .. } => Some(texture),
+            _ => None,
+        };
+        let imported = |r: &&ResourceId| matches!(graph.resources()[r.index()].kind, Kind::Imported { .. });
+        let written = |resource: ResourceId| {
+            let kept = graph.pass_ids().filter(|pass| !plan.is_culled(*pass));
+            kept.flat_map(|pass| graph.accesses_of(pass)).any(|a| a.resource == resource && a.mode.writes())
+        };
+        for (at, resource) in changing.iter().enumerate().filter(|(_, r)| imported(r)) {
+            let Some(texture) = bound(resource) else { continue };
+            for other in changing[at + 1..].iter().filter(imported).filter(|r| bound(r) == Some(texture)) {
+                if !graph.are_aliases(*resource, *other) && (written(*resource) || written(*other)) {
+                    let [resource, other] = [*resource, *other].map(|r| Named::resource(plan, r));
+                    return Err(ImportError::Shared { resource, other });
+                }
+            }
+        }
         Ok(())
     }
 

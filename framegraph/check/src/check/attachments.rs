@@ -4,6 +4,7 @@ use super::finding::Rule;
 use super::resolves;
 use super::rule_input::{RuleInput, layers_of};
 use framegraph::access::AccessKind;
+use framegraph::caps::Caps;
 use framegraph::format::Format;
 use framegraph::id::StepId;
 use framegraph::plan::{Join, Role};
@@ -146,9 +147,32 @@ fn sizes(ctx: &RuleInput<'_>, step: StepId) {
     }
 }
 
-/// Returns the number of color attachments and their bytes per sample in the tile.
-pub(super) fn weight(formats: impl Iterator<Item = Format>) -> (u32, u32) {
-    formats.fold((0, 0), |(count, bytes), format| (count + 1, bytes + format.tile_bytes()))
+/// Number and size of color attachments.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Weight {
+    pub count: u32,
+    /// Bytes per sample in the tile.
+    pub bytes: u32,
+    /// Bytes per sample where each attachment starts at a multiple of its component, as WebGPU counts them.
+    pub aligned: u32,
+}
+
+impl Weight {
+    /// Adds up color attachments, ordered by slot.
+    pub fn of(formats: impl Iterator<Item = Format>) -> Self {
+        let mut sum = Self::default();
+        for format in formats {
+            let component = format.tile_component_bytes();
+            sum.aligned = sum.aligned.div_ceil(component) * component + format.tile_bytes();
+            (sum.count, sum.bytes) = (sum.count + 1, sum.bytes + format.tile_bytes());
+        }
+        sum
+    }
+
+    /// Returns `true` if the attachments fit the device's limits on color attachments.
+    pub fn fits(self, caps: &Caps) -> bool {
+        self.count <= u32::from(caps.max_color_attachments) && self.aligned <= caps.max_color_bytes_per_sample
+    }
 }
 
 /// Checks the limits on color attachments and tile memory.
@@ -158,20 +182,20 @@ pub(super) fn weight(formats: impl Iterator<Item = Format>) -> (u32, u32) {
 fn limits(ctx: &RuleInput<'_>, step: StepId) {
     let caps = ctx.plan.caps();
     let colors = ctx.plan.attachments_of(step).iter().filter(|a| matches!(a.role, Role::Color(_)));
-    let (count, bytes) = weight(colors.filter_map(|a| ctx.format(a.resource)));
-    let fits = |(count, bytes): (u32, u32)| {
-        count <= u32::from(caps.max_color_attachments) && bytes <= caps.max_color_bytes_per_sample
-    };
+    let all = Weight::of(colors.filter_map(|a| ctx.format(a.resource)));
     let mut alone = 0;
     for &member in ctx.plan.passes_of(step) {
         let drawn = ctx.planned_accesses(member).filter(|t| t.access.kind == AccessKind::Color && !t.in_shader);
-        let own = weight(drawn.filter_map(|t| ctx.format(t.resource)));
-        alone = own.1.max(alone);
-        let why = format_args!("{} color attachments of {} bytes per sample", own.0, own.1);
-        ctx.report.require(fits(own), Rule::Limits, (step, member.pass), why);
+        let mut drawn: Vec<_> = drawn.map(|t| (t.access.slot, t.resource)).collect();
+        drawn.sort_by_key(|(slot, _)| *slot);
+        let own = Weight::of(drawn.into_iter().filter_map(|(_, resource)| ctx.format(resource)));
+        alone = own.bytes.max(alone);
+        let why = format_args!("{} color attachments of {} bytes per sample", own.count, own.aligned);
+        ctx.report.require(own.fits(caps), Rule::Limits, (step, member.pass), why);
     }
-    let why = format_args!("{count} color attachments of {bytes} bytes per sample");
-    ctx.report.require(caps.same_pixel || fits((count, bytes)), Rule::Limits, step, why);
+    let Weight { count, bytes, aligned } = all;
+    let why = format_args!("{count} color attachments of {aligned} bytes per sample");
+    ctx.report.require(caps.same_pixel || all.fits(caps), Rule::Limits, step, why);
     let tile = caps.tile_bytes_per_pixel;
     let needed = bytes * u32::from(ctx.step(step).samples);
     let why = format_args!("{needed} bytes per pixel in the tile, the device has {tile}");

@@ -129,6 +129,18 @@ fn inlining(ctx: &RuleInput<'_>, input: ResourceId, replaced: Replaced) {
     require(output.is_some_and(|a| a.mode != Mode::Modify), "it modifies previous contents of its target");
     require(same_shape(ctx, input, replaced), "its target differs in more than its format");
 
+    let mut before: Vec<PassId> = ctx.plan.passes_of(step).iter().map(|m| m.pass).collect();
+    before.truncate(before.iter().position(|pass| *pass == replaced.by).unwrap_or(0));
+    let drawn =
+        |pass: &PassId| ctx.users[input.index()].iter().any(|(user, a)| user == pass && a.kind == AccessKind::Color);
+    if let Some(producer) = before.iter().rposition(drawn) {
+        let shader: Vec<_> = std::iter::once(before[producer])
+            .chain(before[producer + 1..].iter().copied().filter(|pass| is_inlined(ctx, *pass)))
+            .chain([replaced.by])
+            .collect();
+        require(fits_shader(ctx, &shader, input), "its shader exceeds the bindings of a stage");
+    }
+
     let samples = samples_of(ctx, step, input);
     for resource in std::iter::once(&input).chain(&samples) {
         let users = ctx.users[resource.index()].iter().filter(|(pass, _)| *pass != replaced.by);
@@ -149,6 +161,26 @@ fn inlining(ctx: &RuleInput<'_>, input: ResourceId, replaced: Replaced) {
         require(ctx.is_transient(sample) && !stored, "the samples resolved into its input must survive");
     }
     require(ctx.placement(input) == Placement::Inlined, "its input has a placement");
+}
+
+/// Returns `true` if a shader stage can bind what the passes use together, except for `input`, whose value they pass on.
+pub(super) fn fits_shader(ctx: &RuleInput<'_>, passes: &[PassId], input: ResourceId) -> bool {
+    let caps = ctx.plan.caps();
+    let mut counts = [0; 4];
+    for access in passes.iter().flat_map(|pass| ctx.graph.accesses_of(*pass)).filter(|a| a.resource != input) {
+        let is_texture = ctx.texture(access.resource).is_some();
+        match access.kind {
+            AccessKind::Sampled => counts[0] += 1,
+            AccessKind::SamePixel if !caps.same_pixel => counts[0] += 1,
+            AccessKind::StorageRead | AccessKind::StorageWrite if is_texture => counts[1] += 1,
+            AccessKind::StorageRead | AccessKind::StorageWrite => counts[2] += 1,
+            AccessKind::Uniform => counts[3] += 1,
+            _ => {}
+        }
+    }
+    let max =
+        [caps.max_sampled_textures, caps.max_storage_textures, caps.max_storage_buffers, caps.max_uniform_buffers];
+    counts.iter().zip(max).all(|(count, max)| *count <= max)
 }
 
 /// Returns `true` if a running pass is an epilogue.

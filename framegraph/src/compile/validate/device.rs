@@ -14,6 +14,8 @@ pub(super) struct Allowed {
     kinds: [u16; 256],
     /// Number of accesses of a pass below which no limit of bindings can be exceeded.
     few: u32,
+    /// Raster passes may write storage.
+    raster_storage: bool,
 }
 
 /// Kinds of access to a buffer that the device does not limit.
@@ -29,21 +31,24 @@ impl Allowed {
         for format in Format::ALL {
             kinds[format as usize] = allowed(caps.formats.get(format));
         }
-        let limits =
-            [caps.max_sampled_textures, caps.max_storage_textures, caps.max_storage_buffers, caps.max_uniform_buffers];
-        Self { kinds, few: limits.into_iter().min().unwrap_or(0) }
+        let few = limits(caps).into_iter().map(|(_, max)| max).min().unwrap_or(0);
+        Self { kinds, few, raster_storage: caps.raster_storage }
     }
 
     /// Returns `true` if the device supports every access of a pass, as far as a look at each decides.
     #[inline]
     pub(super) fn clearly(&self, graph: &Tables, measures: &[Measured], pass: &Declared) -> bool {
         let accesses = pass.accesses.of(&graph.accesses);
+        let storage = self.raster_storage || pass.kind != PassKind::Raster;
         accesses.len() <= self.few as usize
             && accesses.iter().all(|access| {
                 let layout = measures[access.resource.index()].layout;
                 let kind = self.kinds[usize::from(layout.format())] >> access.kind as u16 & 1;
                 // Samples limit storage, and views have another format.
-                kind != 0 && (layout.samples() == 1 || access.kind.is_attachment()) && access.range.view.is_none()
+                kind != 0
+                    && (storage || access.kind != AccessKind::StorageWrite)
+                    && (layout.samples() == 1 || access.kind.is_attachment())
+                    && access.range.view.is_none()
             })
     }
 }
@@ -141,15 +146,29 @@ fn buffer_fault(graph: &Tables, caps: &Caps, access: &Access, size: u64) -> Opti
     }
 }
 
-/// Reports passes that use more resources than a shader stage can bind.
-fn bindings(graph: &Tables, caps: &Caps, own: &[Access], pass: PassId, errors: &mut CompileErrors) {
-    let classes = [
+/// Returns `true` if a shader stage can bind everything that is used.
+pub(in crate::compile) fn fits_shader<'a>(
+    graph: &Tables,
+    caps: &Caps,
+    uses: impl Iterator<Item = &'a Access> + Clone,
+) -> bool {
+    let count = |kind| uses.clone().filter(|a| class(graph, caps, a) == Some(kind)).count();
+    limits(caps).into_iter().all(|(kind, max)| count(kind) <= max as usize)
+}
+
+/// Returns the maximum number of bindings of each class in a shader stage.
+const fn limits(caps: &Caps) -> [(BindingClass, u32); 4] {
+    [
         (BindingClass::SampledTextures, caps.max_sampled_textures),
         (BindingClass::StorageTextures, caps.max_storage_textures),
         (BindingClass::StorageBuffers, caps.max_storage_buffers),
         (BindingClass::UniformBuffers, caps.max_uniform_buffers),
-    ];
-    for (kind, max) in classes {
+    ]
+}
+
+/// Reports passes that use more resources than a shader stage can bind.
+fn bindings(graph: &Tables, caps: &Caps, own: &[Access], pass: PassId, errors: &mut CompileErrors) {
+    for (kind, max) in limits(caps) {
         let is = |a: &&Access| class(graph, caps, a) == Some(kind);
         let count = own.iter().filter(is).count() as u32;
         if count > max {

@@ -1,8 +1,8 @@
 //! Inlining: producers of an inlined pass, and objections to an epilogue.
 
 use super::merges::Candidate;
-use crate::check::attachments::weight;
-use crate::check::hazards::same_shape;
+use crate::check::attachments::Weight;
+use crate::check::hazards::{fits_shader, same_shape};
 use crate::check::rule_input::{Replaced, only};
 use framegraph::access::{Access, AccessKind, Mode, Range};
 use framegraph::decision::Refusal;
@@ -99,6 +99,11 @@ impl Candidate<'_, '_> {
                 })
             }),
             Refusal::StorageHazard => self.storage_hazard(),
+            Refusal::TooManyBindings => {
+                let inlined = self.members.iter().filter(|m| m.join == Join::Inlined).map(|m| m.pass);
+                let shader: Vec<_> = producers.last().copied().into_iter().chain(inlined).chain([self.pass]).collect();
+                !fits_shader(self.ctx, &shader, input.resource)
+            }
             _ => false,
         }
     }
@@ -142,10 +147,7 @@ impl Candidate<'_, '_> {
             let replaced = a.resource == input || samples.contains(&a.resource);
             self.ctx.format(if replaced { output.resource } else { a.resource })
         });
-        let (count, bytes) = weight(formats);
-        let tile = caps.tile_bytes_per_pixel;
-        count > u32::from(caps.max_color_attachments)
-            || bytes > caps.max_color_bytes_per_sample
-            || (tile != 0 && bytes * u32::from(self.ctx.step(self.step).samples) > tile)
+        let (weight, tile) = (Weight::of(formats), caps.tile_bytes_per_pixel);
+        !weight.fits(caps) || (tile != 0 && weight.bytes * u32::from(self.ctx.step(self.step).samples) > tile)
     }
 }

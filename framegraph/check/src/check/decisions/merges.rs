@@ -4,7 +4,7 @@
 //! step. For a pass that joined but was not inlined, it is between the pass and the earlier passes of its step.
 
 use super::rows::{judge, number, predecessor};
-use crate::check::attachments::weight;
+use crate::check::attachments::Weight;
 use crate::check::resolves::{self, attaches_samples};
 use crate::check::rule_input::{PlannedAccess, RuleInput, layers_of};
 use framegraph::access::{Access, AccessKind, Mode};
@@ -124,11 +124,14 @@ impl<'c, 'p> Candidate<'c, 'p> {
             let with = plan.step_passes()[at - 1].pass;
             let objects = |why: &Refusal| *why != Refusal::RoomForLater && later.split(with, *why);
             let drawn = ctx.accesses_by(&plan.step_passes()[start..=at]).map(|(_, t)| t);
-            let drawn: BTreeSet<_> = drawn.filter(|t| t.access.kind == AccessKind::Color).map(|t| t.resource).collect();
-            let (count, bytes) = weight(drawn.into_iter().filter_map(|r| ctx.format(r)));
-            let many = count > caps.max_color_attachments.into() || bytes > caps.max_color_bytes_per_sample;
-            let tile = caps.tile_bytes_per_pixel;
-            Refusal::ALL.iter().any(objects) || many && !caps.same_pixel || tile != 0 && bytes * samples > tile
+            let colors = drawn.filter(|t| t.access.kind == AccessKind::Color);
+            // Ordered by slot; a resource that several passes draw counts once.
+            let mut seen = BTreeSet::new();
+            let drawn: BTreeSet<_> =
+                colors.filter(|t| seen.insert(t.resource)).map(|t| (t.access.slot, t.resource)).collect();
+            let weight = Weight::of(drawn.into_iter().filter_map(|(_, r)| ctx.format(r)));
+            let (many, tile) = (!weight.fits(caps), caps.tile_bytes_per_pixel);
+            Refusal::ALL.iter().any(objects) || many && !caps.same_pixel || tile != 0 && weight.bytes * samples > tile
         })
     }
 
@@ -177,13 +180,9 @@ impl<'c, 'p> Candidate<'c, 'p> {
                 let mut depth = self.before().filter(|(_, t)| t.access.kind.is_depth());
                 a.kind.is_depth() && depth.next().is_some() && !self.attached(a)
             }),
-            Refusal::TooManyAttachments => {
-                let (count, bytes) = self.weight();
-                let too_many = count > u32::from(caps.max_color_attachments);
-                !caps.same_pixel && (too_many || bytes > caps.max_color_bytes_per_sample)
-            }
+            Refusal::TooManyAttachments => !caps.same_pixel && !self.weight().fits(caps),
             Refusal::TileMemory => {
-                let bytes = self.weight().1 * u32::from(row.samples);
+                let bytes = self.weight().bytes * u32::from(row.samples);
                 caps.tile_bytes_per_pixel != 0 && bytes > caps.tile_bytes_per_pixel
             }
             Refusal::SampledElsewhere => self.sampled_elsewhere(),
@@ -271,11 +270,14 @@ impl<'c, 'p> Candidate<'c, 'p> {
         colors.any(|a| self.colors().any(|r| self.shows(r, a).0 && r.role != Role::Color(a.slot)))
     }
 
-    /// Returns the number of color attachments and bytes per sample of the step including the pass.
-    fn weight(&self) -> (u32, u32) {
+    /// Returns the number and size of the color attachments of the step including the pass.
+    fn weight(&self) -> Weight {
         let own = self.accesses.iter().filter(|a| a.kind == AccessKind::Color && !self.attached(a));
-        let all = self.colors().map(|a| a.resource).chain(own.map(|a| a.resource));
-        weight(all.filter_map(|r| self.ctx.format(r)))
+        let slot = |role: Role| if let Role::Color(slot) = role { slot } else { u8::MAX };
+        let all = self.colors().map(|a| (slot(a.role), a.resource)).chain(own.map(|a| (a.slot, a.resource)));
+        let mut all: Vec<_> = all.collect();
+        all.sort_by_key(|(slot, _)| *slot);
+        Weight::of(all.into_iter().filter_map(|(_, r)| self.ctx.format(r)))
     }
 
     /// Returns `true` if the pass reads from memory what the step draws, or draws what the step reads from memory.
