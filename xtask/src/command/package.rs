@@ -14,8 +14,8 @@ pub const COMMAND: Command = Command {
     summary: "pack the published crates, and check what the packages contain",
     details: "\
 Checks the manifests of all published crates, packs them in order of dependency,
-and unpacks them into target/xtask/packages. Nothing is uploaded, and the network
-is not used. A test of this program checks manifests and lists of files.
+and unpacks them into target/xtask/packages. Nothing is uploaded. Without
+`--build` the network is not used. A test of this program checks manifests and lists of files.
 
   --build       also write a project outside of the workspace that depends on
                 the unpacked crates. Its programs are the first examples of the

@@ -53,8 +53,7 @@ fn camera() -> Vec<Arg> {
             "SCENE",
             "A glTF or GLB file, or a built-in scene: spheres (default), balls, columns, glass, lamps (1000 punctual \
              lights; lamps:N has N), lobes, materials, optics, panes (5 crossing blended panes; panes:N has N). \
-             Defaults \
-             of options are in parentheses",
+             Defaults of options are in parentheses",
         ),
         option("size", "WxH", "Picture size in pixels (1280x720)"),
         option("msaa", "1|4", "Samples per pixel (4)"),
@@ -146,10 +145,8 @@ fn outputs() -> impl Iterator<Item = Arg> {
             "linear-out",
             "FILE.exr",
             "Exposed radiance before tone mapping, linear Rec.709, at the rendered size. It contains shading, \
-             shadows, \
-             ao, ssr, glass, blending, fog, background, msaa, taa and dof. It excludes bloom, flares, \
-             --compensation, \
-             vignette, edge fade, grading, tone curve, dither, fxaa and upscaling. Values above 1 are kept, so it \
+             shadows, ao, ssr, glass, blending, fog, background, msaa, taa and dof. It excludes bloom, flares, \
+             --compensation, vignette, edge fade, grading, tone curve, dither, fxaa and upscaling. Values above 1 are kept, so it \
              conflicts with --disable hdr-target",
         ),
         option("plan", "FILE", "The plan as text, with its graph in a .dot file of the same name (PICTURE.plan.txt)"),
