@@ -50,6 +50,8 @@ pub struct Executor {
     executed: Counts,
     barriers: u64,
     times_us: Vec<Option<f64>>,
+    /// A frame began and did not end: it failed, or its recorder panicked.
+    dirty: bool,
 }
 
 /// An exported resource or the newest image of a history.
@@ -87,6 +89,7 @@ impl Executor {
             executed: Counts::default(),
             barriers: 0,
             times_us: Vec::new(),
+            dirty: false,
         })
     }
 
@@ -114,6 +117,7 @@ impl Executor {
         schedule: Option<&Schedule>,
         commands: Vec<Command>,
     ) -> Result<(), Error> {
+        self.recover()?;
         let mut earlier = self.release()?;
         let rings = earlier.as_mut().map_or_else(Vec::new, |earlier| earlier.resources.take_rings());
         if let Some(mut earlier) = earlier {
@@ -130,27 +134,41 @@ impl Executor {
     ///
     /// # Errors
     /// Fails if an import is not bound, a Vulkan call fails, or `record` returns an error. The frame is then not
-    /// complete, and histories start anew.
+    /// complete, and histories start anew. If `record` panics, the next frame starts them anew.
     pub fn execute(
         &mut self,
         plan: &Plan,
         imports: &Imports,
         mut record: impl FnMut(&mut Cx<'_>) -> Result<(), RecordError>,
     ) -> Result<(), Error> {
+        self.recover()?;
         if self.prepared.as_ref().is_none_or(|prepared| prepared.plan.compilation() != plan.compilation()) {
             self.prepare(plan, None)?;
         }
         if let Some(id) = imports.missing(plan) {
             return Err(Error::Import { resource: plan.graph().resource_name(id).to_owned() });
         }
+        self.dirty = true;
         let result = self.run(imports, &mut record);
-        if result.is_err() {
+        if result.is_ok() {
+            self.dirty = false;
+        } else {
+            // The first error is the cause. If this fails too, the next call tries it again.
+            let _ = self.recover();
+        }
+        result
+    }
+
+    /// Drops a frame that did not end, with the prepared plan. Waits for the GPU.
+    fn recover(&mut self) -> Result<(), Error> {
+        if self.dirty {
             self.lanes.abandon();
             if let Some(mut prepared) = self.release()? {
                 prepared.destroy(&self.gpu.shared.driver);
             }
+            self.dirty = false;
         }
-        result
+        Ok(())
     }
 
     fn run(&mut self, imports: &Imports, record: crate::run::Recorder<'_>) -> Result<(), Error> {

@@ -2,6 +2,7 @@
 
 mod bench;
 mod contents;
+mod errors;
 mod faults;
 mod frames;
 mod post;
