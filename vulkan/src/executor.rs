@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::imports::Imports;
 use crate::lanes::{FrameSlot, Lanes};
 use crate::layouts::Layouts;
-use crate::prepared::Prepared;
+use crate::prepared::{Prepared, check};
 use crate::resources::MemoryReport;
 use crate::run::Run;
 use crate::views::Views;
@@ -97,8 +97,8 @@ impl Executor {
     /// Histories with the same name and shape keep their contents. Waits for the GPU.
     ///
     /// # Errors
-    /// Fails if the device cannot create what the plan needs, or the schedule does not fit the device. The executor
-    /// then has no plan.
+    /// Fails if the device cannot execute the plan or its schedule; the executor then keeps the earlier plan. Fails if
+    /// the device cannot create what the plan needs; the executor then has no plan and no histories.
     ///
     /// # Panics
     /// Panics if `schedule` belongs to another plan.
@@ -117,6 +117,7 @@ impl Executor {
         schedule: Option<&Schedule>,
         commands: Vec<Command>,
     ) -> Result<(), Error> {
+        check(&self.gpu, plan, schedule, &commands)?;
         self.recover()?;
         let mut earlier = self.release()?;
         let rings = earlier.as_mut().map_or_else(Vec::new, |earlier| earlier.resources.take_rings());

@@ -1,9 +1,10 @@
 //! Executors after frames and preparations that fail.
 
 use crate::bench::{FRAME, TestResult, device, frames, planned};
-use framegraph::Options;
-use framegraph_vulkan::Executor;
+use framegraph::{Caps, ClearValue, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
+use framegraph_vulkan::ash::vk;
 use framegraph_vulkan::testing::{self, Mock};
+use framegraph_vulkan::{Executor, Imports};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A recorder that panics leaves an executor that can execute and prepare.
@@ -55,5 +56,36 @@ fn executors_recover_from_recorders_that_fail() -> TestResult {
     executor.wait()?;
     assert_eq!(executor.executed(), plan.counts());
     assert_eq!(device.messages(), [""; 0]);
+    Ok(())
+}
+
+/// Refused plans leave the prepared one with its histories, and no object remains when the device is closed.
+#[test]
+fn refused_plans_keep_the_prepared_one() -> TestResult {
+    let Some(device) = device("refused_plans_keep_the_prepared_one") else { return Ok(()) };
+    let mut graph = Graph::new();
+    let history = graph.history("history", TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm), 1);
+    let white = Intent::Clear(ClearValue::Color([1.0; 4]));
+    let written = graph.add_fn("write", |pass| pass.color(history, white))?;
+    graph.export(written)?;
+    let options = Options::for_frame(FRAME[0], FRAME[1]);
+    let plan = planned(&device, &graph, &options, |_| {})?;
+    let mut without_barriers = Plan::new();
+    let caps = Caps { explicit_barriers: false, ..device.gpu().caps() };
+    compile(&graph, &caps, &options, &mut Scratch::new(), &mut without_barriers)?;
+    let mut executor = Executor::new(device.gpu())?;
+    executor.execute(&plan, &Imports::new(), |_| Ok(()))?;
+    let id = graph.resource_of(written).ok_or("the history belongs to the graph")?;
+    let kept = executor.exported(id).ok_or("the history is kept")?;
+    let refused = executor.prepare(&without_barriers, None);
+    assert!(refused.is_err_and(|error| error.to_string().contains("no barriers")));
+    assert_eq!(executor.exported(id), Some(kept));
+    assert!(executor.layout(id, kept.image, 0, 0, 0) != vk::ImageLayout::UNDEFINED);
+    executor.execute(&plan, &Imports::new(), |_| Ok(()))?;
+    assert_ne!(executor.exported(id), Some(kept));
+    assert!(executor.prepare(&without_barriers, None).is_err());
+    drop(executor);
+    // Closing the device panics if an object was not destroyed.
+    drop(device);
     Ok(())
 }
