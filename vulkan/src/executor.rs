@@ -202,7 +202,8 @@ impl Executor {
         Ok(())
     }
 
-    /// Waits until the GPU has finished all frames.
+    /// Waits until the GPU has finished all frames. The CPU can then read what they wrote to mapped memory: each frame
+    /// ends with a memory dependency to the host.
     ///
     /// # Errors
     /// Fails if the device is lost.

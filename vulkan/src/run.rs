@@ -250,9 +250,9 @@ impl Run<'_> {
                 self.lanes.submit(self.gpu, self.slot, lane, &[], &[])?;
             }
         }
-        if self.lanes.has_work(0) || !self.imports.signals.is_empty() {
-            self.lanes.submit(self.gpu, self.slot, 0, &[], &self.imports.signals)?;
-        }
+        // The first queue has waited for the others, so that this covers their writes too.
+        self.lanes.rows[0].pending.memory.push(Scope::TO_HOST);
+        self.lanes.submit(self.gpu, self.slot, 0, &[], &self.imports.signals)?;
         let rows = self.prepared.plan.resources();
         self.executed.memoryless = rows.iter().filter(|row| row.placement == Placement::Memoryless).count() as u32;
         self.executed.culled = self.prepared.plan.pass_steps().iter().filter(|step| step.is_none()).count() as u32;
