@@ -176,9 +176,10 @@ impl Executor {
         let slot = &mut self.slots[(self.frame % FRAMES as u64) as usize];
         slot.reclaim(&self.gpu)?;
         let prepared = self.prepared.as_mut().ok_or(Error::NotPrepared)?;
+        let steps = prepared.plan.steps().len() as u32;
         if self.options.timing {
             crate::timing::read(&self.gpu, slot, &mut self.times_us)?;
-            crate::timing::begin(&self.gpu, slot, prepared.plan.steps().len() as u32)?;
+            crate::timing::begin(&self.gpu, slot, steps)?;
         }
         let queues = self.lanes.rows.len();
         let mut run = Run {
@@ -196,6 +197,7 @@ impl Executor {
             open: vec![None; queues],
         };
         run.all(record)?;
+        crate::timing::end(run.slot, steps);
         (self.executed, self.barriers) = (run.executed, run.barriers);
         self.frame += 1;
         prepared.resources.advance();

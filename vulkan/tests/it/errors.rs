@@ -4,7 +4,7 @@ use crate::bench::{FRAME, TestResult, device, frames, planned};
 use framegraph::{Caps, ClearValue, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
 use framegraph_vulkan::ash::vk;
 use framegraph_vulkan::testing::{self, Mock};
-use framegraph_vulkan::{Executor, Imports};
+use framegraph_vulkan::{Executor, ExecutorOptions, Imports};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A recorder that panics leaves an executor that can execute and prepare.
@@ -42,19 +42,38 @@ fn executors_recover_from_recorders_that_panic() -> TestResult {
     Ok(())
 }
 
-/// The error of the recorder is returned, and the next frame is complete.
+/// The error of the recorder is returned, and the next frame is complete. Timestamps of the failed frame are not read.
 #[test]
 fn executors_recover_from_recorders_that_fail() -> TestResult {
     let Some(device) = device("executors_recover_from_recorders_that_fail") else { return Ok(()) };
     let (_, graph) = frames()?.swap_remove(0);
     let plan = planned(&device, &graph, &Options::for_frame(FRAME[0], FRAME[1]), |_| {})?;
-    let (mut executor, mut mock) = (Executor::new(device.gpu())?, Mock { kit: testing::Kit::new(device.gpu()) });
+    let options = ExecutorOptions { timing: true, ..ExecutorOptions::default() };
+    let (mut executor, mut mock) =
+        (Executor::with(device.gpu(), options)?, Mock { kit: testing::Kit::new(device.gpu()) });
     let imports = testing::imports(&mut mock.kit, &plan)?;
     let failed = executor.execute(&plan, &imports, |_| Err("planted".into()));
     assert!(failed.is_err_and(|error| error.to_string().contains("planted")));
     executor.execute(&plan, &imports, |cx| mock.record(cx))?;
+    assert!(executor.step_times_us().is_empty());
     executor.wait()?;
     assert_eq!(executor.executed(), plan.counts());
+    assert_eq!(device.messages(), [""; 0]);
+    Ok(())
+}
+
+/// A plan without steps has no timestamps.
+#[test]
+fn plans_without_steps_are_executed_with_timing() -> TestResult {
+    let Some(device) = device("plans_without_steps_are_executed_with_timing") else { return Ok(()) };
+    let plan = planned(&device, &Graph::new(), &Options::for_frame(FRAME[0], FRAME[1]), |_| {})?;
+    let options = ExecutorOptions { timing: true, ..ExecutorOptions::default() };
+    let mut executor = Executor::with(device.gpu(), options)?;
+    for _ in 0..4 {
+        executor.execute(&plan, &Imports::new(), |_| Ok(()))?;
+        assert!(executor.step_times_us().is_empty());
+    }
+    executor.wait()?;
     assert_eq!(device.messages(), [""; 0]);
     Ok(())
 }
