@@ -146,9 +146,10 @@ impl Part {
         Self { mip: index % mips, layer: index / mips % layers, plane: index / mips / layers }
     }
 
-    /// Returns the index of the part.
+    /// Returns the index of the part. Slices of a three-dimensional texture belong to the part of their level.
     pub(crate) fn index(self, desc: &TextureDesc, frame: [u32; 2]) -> u32 {
-        (self.plane * desc.tracked_layers() + self.layer) * desc.mip_count(frame) + self.mip
+        let layer = if desc.dimension == Dimension::D3 { 0 } else { self.layer };
+        (self.plane * desc.tracked_layers() + layer) * desc.mip_count(frame) + self.mip
     }
 }
 

@@ -7,3 +7,4 @@ mod faults;
 mod frames;
 mod post;
 mod queues;
+mod slices;
