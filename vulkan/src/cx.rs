@@ -239,6 +239,8 @@ impl<'a> Cx<'a> {
     }
 
     fn thing(&self, id: ResourceId) -> Option<Thing> {
+        // The identifier may be that of another graph.
+        self.plan.graph().resources().get(id.index())?;
         self.imports.rows.get(&id).map(|row| row.thing).or_else(|| self.resources.of(id))
     }
 

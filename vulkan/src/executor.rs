@@ -131,7 +131,7 @@ impl Executor {
     }
 
     /// Executes one frame of a plan. `record` is called for each pass that runs, in order, with the command buffer and
-    /// the resources of the pass. Prepares the plan for one queue if another one is prepared.
+    /// the resources of the pass. Takes `imports`, which are promised for one frame. Prepares the plan for one queue if another one is prepared.
     ///
     /// # Errors
     /// Fails if an import is not bound, a Vulkan call fails, or `record` returns an error. The frame is then not
@@ -139,7 +139,7 @@ impl Executor {
     pub fn execute(
         &mut self,
         plan: &Plan,
-        imports: &Imports,
+        imports: Imports,
         mut record: impl FnMut(&mut Cx<'_>) -> Result<(), RecordError>,
     ) -> Result<(), Error> {
         self.recover()?;
@@ -150,7 +150,7 @@ impl Executor {
             return Err(Error::Import { resource: plan.graph().resource_name(id).to_owned() });
         }
         self.dirty = true;
-        let result = self.run(imports, &mut record);
+        let result = self.run(&imports, &mut record);
         if result.is_ok() {
             self.dirty = false;
         } else {
@@ -276,7 +276,7 @@ impl Executor {
     #[must_use]
     pub fn layout(&self, id: ResourceId, image: vk::Image, mip: u32, layer: u32, plane: u32) -> vk::ImageLayout {
         let part = self.prepared.as_ref().and_then(|prepared| {
-            let desc = prepared.plan.graph().resources()[id.index()].desc;
+            let desc = prepared.plan.graph().resources().get(id.index())?.desc;
             let part = crate::shape::Part { mip, layer, plane };
             Some(part.index(desc.texture()?, prepared.plan.frame()))
         });

@@ -238,8 +238,10 @@ impl Run<'_> {
     fn end(&mut self) -> Result<(), Error> {
         for (id, import) in &self.imports.rows {
             let (Some(leave), plan) = (import.leave, &self.prepared.plan) else { continue };
-            let desc = plan.graph().resources()[id.index()].desc;
-            let Some(desc) = desc.texture() else { continue };
+            // The identifier may be that of another graph.
+            let Some(desc) = plan.graph().resources().get(id.index()).and_then(|row| row.desc.texture()) else {
+                continue;
+            };
             let all = 0..parts(desc, plan.frame(), desc.format);
             let old = |layouts: &Layouts, _: u32, _: Format, part: u32| layouts.get(import.thing, part);
             let pending = &mut self.lanes.rows[0].pending;

@@ -151,7 +151,7 @@ pub fn run(device: &TestDevice, samples: u8) -> Result<Report, Box<dyn std::erro
     executor.prepare(&plan, Some((&found, Some(&memory))))?;
     let mut subpasses = 0;
     for _ in 0..2 {
-        executor.execute(&plan, &Imports::new(), |cx| {
+        executor.execute(&plan, Imports::new(), |cx| {
             subpasses = cx.subpass() + 1;
             record(&mut kit, &frame, samples, cx)
         })?;

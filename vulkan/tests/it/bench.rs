@@ -87,12 +87,19 @@ pub fn run(
     // Imports in a declared state have it before the first frame only.
     let frames = if plan.graph().resource_ids().any(left) { 1 } else { frames };
     for _ in 0..frames {
-        executor.execute(plan, &imports, |cx| mock.record(cx))?;
+        executor.execute(plan, again(&imports), |cx| mock.record(cx))?;
     }
     executor.wait()?;
     let contents = contents(&executor, &mut mock, plan, &imports)?;
     drop(mock);
     Ok(Ran { messages: device.messages(), contents, executor })
+}
+
+/// Binds the same images and buffers for another frame.
+#[allow(unsafe_code, reason = "imports are promises about handles")]
+pub fn again(imports: &Imports) -> Imports {
+    // SAFETY: the kit of the test is alive, and tests fail if the layers report another layout.
+    unsafe { testing::imports_again(imports) }
 }
 
 #[allow(unsafe_code, reason = "commands without their barriers race on the GPU")]

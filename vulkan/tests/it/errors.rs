@@ -1,7 +1,9 @@
 //! Executors after frames and preparations that fail.
 
 use crate::bench::{FRAME, TestResult, device, frames, planned};
-use framegraph::{Caps, ClearValue, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
+use framegraph::{
+    Caps, ClearValue, Extent, Format, Graph, Intent, Options, Plan, ResourceId, Scratch, TextureDesc, compile,
+};
 use framegraph_vulkan::ash::vk;
 use framegraph_vulkan::testing::{self, Mock};
 use framegraph_vulkan::{Executor, ExecutorOptions, Imports};
@@ -16,10 +18,11 @@ fn executors_recover_from_recorders_that_panic() -> TestResult {
     for prepares in [false, true] {
         let (mut executor, mut mock) = (Executor::new(device.gpu())?, Mock { kit: testing::Kit::new(device.gpu()) });
         let imports = testing::imports(&mut mock.kit, &plan)?;
-        executor.execute(&plan, &imports, |cx| mock.record(cx))?;
+        executor.execute(&plan, imports, |cx| mock.record(cx))?;
+        let imports = testing::imports(&mut mock.kit, &plan)?;
         let mut passes = 0;
         let frame = AssertUnwindSafe(|| {
-            executor.execute(&plan, &imports, |cx| {
+            executor.execute(&plan, imports, |cx| {
                 passes += 1;
                 assert!(passes < 2, "planted");
                 mock.record(cx)
@@ -31,9 +34,9 @@ fn executors_recover_from_recorders_that_panic() -> TestResult {
         if prepares {
             executor.prepare(&plan, None)?;
         }
-        let imports = testing::imports(&mut mock.kit, &plan)?;
         for _ in 0..3 {
-            executor.execute(&plan, &imports, |cx| mock.record(cx))?;
+            let imports = testing::imports(&mut mock.kit, &plan)?;
+            executor.execute(&plan, imports, |cx| mock.record(cx))?;
         }
         executor.wait()?;
         assert_eq!(executor.executed(), plan.counts());
@@ -52,9 +55,10 @@ fn executors_recover_from_recorders_that_fail() -> TestResult {
     let (mut executor, mut mock) =
         (Executor::with(device.gpu(), options)?, Mock { kit: testing::Kit::new(device.gpu()) });
     let imports = testing::imports(&mut mock.kit, &plan)?;
-    let failed = executor.execute(&plan, &imports, |_| Err("planted".into()));
+    let failed = executor.execute(&plan, imports, |_| Err("planted".into()));
     assert!(failed.is_err_and(|error| error.to_string().contains("planted")));
-    executor.execute(&plan, &imports, |cx| mock.record(cx))?;
+    let imports = testing::imports(&mut mock.kit, &plan)?;
+    executor.execute(&plan, imports, |cx| mock.record(cx))?;
     assert!(executor.step_times_us().is_empty());
     executor.wait()?;
     assert_eq!(executor.executed(), plan.counts());
@@ -70,7 +74,7 @@ fn plans_without_steps_are_executed_with_timing() -> TestResult {
     let options = ExecutorOptions { timing: true, ..ExecutorOptions::default() };
     let mut executor = Executor::with(device.gpu(), options)?;
     for _ in 0..4 {
-        executor.execute(&plan, &Imports::new(), |_| Ok(()))?;
+        executor.execute(&plan, Imports::new(), |_| Ok(()))?;
         assert!(executor.step_times_us().is_empty());
     }
     executor.wait()?;
@@ -93,18 +97,39 @@ fn refused_plans_keep_the_prepared_one() -> TestResult {
     let caps = Caps { explicit_barriers: false, ..device.gpu().caps() };
     compile(&graph, &caps, &options, &mut Scratch::new(), &mut without_barriers)?;
     let mut executor = Executor::new(device.gpu())?;
-    executor.execute(&plan, &Imports::new(), |_| Ok(()))?;
+    executor.execute(&plan, Imports::new(), |_| Ok(()))?;
     let id = graph.resource_of(written).ok_or("the history belongs to the graph")?;
     let kept = executor.exported(id).ok_or("the history is kept")?;
     let refused = executor.prepare(&without_barriers, None);
     assert!(refused.is_err_and(|error| error.to_string().contains("no barriers")));
     assert_eq!(executor.exported(id), Some(kept));
     assert!(executor.layout(id, kept.image, 0, 0, 0) != vk::ImageLayout::UNDEFINED);
-    executor.execute(&plan, &Imports::new(), |_| Ok(()))?;
+    executor.execute(&plan, Imports::new(), |_| Ok(()))?;
     assert_ne!(executor.exported(id), Some(kept));
     assert!(executor.prepare(&without_barriers, None).is_err());
     drop(executor);
     // Closing the device panics if an object was not destroyed.
     drop(device);
+    Ok(())
+}
+
+/// Identifiers of another graph have no object and do not panic.
+#[test]
+#[allow(unsafe_code, reason = "imports are promises about handles")]
+fn identifiers_of_other_graphs_are_ignored() -> TestResult {
+    let Some(device) = device("identifiers_of_other_graphs_are_ignored") else { return Ok(()) };
+    let plan = planned(&device, &Graph::new(), &Options::for_frame(FRAME[0], FRAME[1]), |_| {})?;
+    let mut executor = Executor::new(device.gpu())?;
+    let (id, mut imports) = (ResourceId::at(9), Imports::new());
+    // SAFETY: the plan has no such import, so the handle is not used.
+    unsafe {
+        imports.image(id, vk::Image::null(), vk::ImageLayout::GENERAL);
+        imports.leave_in(id, vk::ImageLayout::PRESENT_SRC_KHR);
+    }
+    executor.execute(&plan, imports, |_| Ok(()))?;
+    assert_eq!(executor.exported(id), None);
+    assert!(executor.layout(id, vk::Image::null(), 0, 0, 0) == vk::ImageLayout::UNDEFINED);
+    executor.wait()?;
+    assert_eq!(device.messages(), [""; 0]);
     Ok(())
 }

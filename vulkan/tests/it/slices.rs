@@ -31,7 +31,7 @@ fn attached_slices_keep_the_others() -> TestResult {
         let options = Options { alias, ..Options::for_frame(SIDE, SIDE) };
         let plan = planned(&device, &graph, &options, |_| {})?;
         let (mut executor, mut kit) = (Executor::new(device.gpu())?, Kit::new(device.gpu()));
-        executor.execute(&plan, &Imports::new(), |cx| {
+        executor.execute(&plan, Imports::new(), |cx| {
             let (raw, commands) = (cx.device().clone(), cx.commands());
             let extent = vk::Extent2D { width: SIDE / 2, height: SIDE };
             let aspect_mask = vk::ImageAspectFlags::COLOR;
