@@ -117,7 +117,7 @@ impl Executor {
         schedule: Option<&Schedule>,
         commands: Vec<Command>,
     ) -> Result<(), Error> {
-        check(&self.gpu, plan, schedule, &commands)?;
+        check(&self.gpu, plan, schedule, &commands, self.options.multiview)?;
         self.recover()?;
         let mut earlier = self.release()?;
         let rings = earlier.as_mut().map_or_else(Vec::new, |earlier| earlier.resources.take_rings());

@@ -3,6 +3,7 @@
 use crate::driver::{Driver, Object};
 use crate::error::Error;
 use crate::gpu::{DeviceQueue, Gpu};
+use crate::limits::{check_caps, check_views};
 use crate::owners::check_owners;
 use crate::resources::{Resources, Ring};
 use crate::subpass::{Subpass, subpasses};
@@ -33,12 +34,22 @@ pub(crate) struct PreparedStep {
 }
 
 /// Fails if a plan cannot be executed on the device. Creates nothing.
-pub(crate) fn check(gpu: &Gpu, plan: &Plan, schedule: Option<&Schedule>, commands: &[Command]) -> Result<(), Error> {
+pub(crate) fn check(
+    gpu: &Gpu,
+    plan: &Plan,
+    schedule: Option<&Schedule>,
+    commands: &[Command],
+    multiview: bool,
+) -> Result<(), Error> {
     if !plan.caps().explicit_barriers {
         return Err(Error::NoBarriers);
     }
     if plan.counts().inlined > 0 {
         return Err(Error::Inlined);
+    }
+    check_caps(plan.caps(), &gpu.caps())?;
+    if multiview {
+        check_views(gpu, plan)?;
     }
     let (wanted, given) = (schedule.map_or(1, |schedule| schedule.layout.queues.len()), gpu.shared.queues.len());
     if wanted > given {

@@ -76,6 +76,10 @@ impl Shape {
         if desc.dimension == Dimension::D3 && usage.contains(vk::ImageUsageFlags::COLOR_ATTACHMENT) {
             flags |= vk::ImageCreateFlags::TYPE_2D_ARRAY_COMPATIBLE;
         }
+        if desc.dimension == Dimension::D2 && width == height && layers >= 6 && desc.samples == 1 {
+            // `ViewShape::kind` can be a cube.
+            flags |= vk::ImageCreateFlags::CUBE_COMPATIBLE;
+        }
         if self.srgb_views {
             // Storage usage does not apply to views in the sRGB format.
             flags |= vk::ImageCreateFlags::MUTABLE_FORMAT | vk::ImageCreateFlags::EXTENDED_USAGE;

@@ -2,7 +2,8 @@
 
 use crate::bench::{FRAME, TestResult, device, frames, planned};
 use framegraph::{
-    Caps, ClearValue, Extent, Format, Graph, Intent, Options, Plan, ResourceId, Scratch, TextureDesc, compile,
+    Caps, ClearValue, Extent, Format, Graph, Intent, Options, Plan, ResolveMode, ResolveModes, ResourceId, Scratch,
+    TextureDesc, compile,
 };
 use framegraph_vulkan::ash::vk;
 use framegraph_vulkan::testing::{self, Mock};
@@ -130,6 +131,40 @@ fn identifiers_of_other_graphs_are_ignored() -> TestResult {
     assert_eq!(executor.exported(id), None);
     assert!(executor.layout(id, vk::Image::null(), 0, 0, 0) == vk::ImageLayout::UNDEFINED);
     executor.wait()?;
+    assert_eq!(device.messages(), [""; 0]);
+    Ok(())
+}
+
+/// Plans that need more than the device has are refused before anything is created.
+#[test]
+fn plans_for_other_devices_are_refused() -> TestResult {
+    let Some(device) = device("plans_for_other_devices_are_refused") else { return Ok(()) };
+    let mut graph = Graph::new();
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm).layers(33);
+    let layers = graph.texture("layers", desc);
+    let layers = graph.add_fn("draw", |pass| pass.color(layers, Intent::Clear(ClearValue::Color([1.0; 4]))))?;
+    graph.export(layers)?;
+    let options = Options::for_frame(FRAME[0], FRAME[1]);
+    let mut executor = Executor::new(device.gpu())?;
+    let refused = |executor: &mut Executor, change: fn(&mut Caps), what: &str| -> TestResult {
+        let plan = planned(&device, &graph, &options, change)?;
+        let error = executor.prepare(&plan, None).err().ok_or(what)?.to_string();
+        assert!(error.contains(what), "{what}: {error}");
+        Ok(())
+    };
+    refused(&mut executor, |caps| caps.max_color_attachments += 1, "max_color_attachments")?;
+    refused(&mut executor, |caps| caps.max_attached_layers += 1, "max_attached_layers")?;
+    refused(&mut executor, |caps| caps.max_texture_layers += 1, "max_texture_layers")?;
+    refused(&mut executor, |caps| caps.placed_histories = true, "placed_histories")?;
+    refused(&mut executor, |caps| caps.separate_heaps = false, "separate_heaps")?;
+    let every = |caps: &mut Caps| caps.depth_resolves = ResolveModes::of(&ResolveMode::ALL);
+    refused(&mut executor, every, "depth_resolves")?;
+    let plan = planned(&device, &graph, &options, |_| {})?;
+    executor.prepare(&plan, None)?;
+    let options = ExecutorOptions { multiview: true, ..ExecutorOptions::default() };
+    let error = Executor::with(device.gpu(), options)?.prepare(&plan, None);
+    assert!(error.is_err_and(|error| error.to_string().contains("draw: it draws 33 layers")));
+    drop(executor);
     assert_eq!(device.messages(), [""; 0]);
     Ok(())
 }

@@ -6,7 +6,7 @@ use crate::bench::{TestResult, device, planned};
 use framegraph::{Alias, ClearValue, Dimension, Extent, Format, Graph, Intent, Options, TextureDesc};
 use framegraph_vulkan::ash::vk;
 use framegraph_vulkan::testing::Kit;
-use framegraph_vulkan::{Executor, Imports};
+use framegraph_vulkan::{Executor, Imports, ViewShape};
 
 const SIDE: u32 = 8;
 const SLICES: u32 = 6;
@@ -66,5 +66,33 @@ fn attached_slices_keep_the_others() -> TestResult {
         }
         assert_eq!(device.messages(), [""; 0], "{alias:?}");
     }
+    Ok(())
+}
+
+/// Textures of six square layers can be bound as cubes.
+#[test]
+fn layers_are_bound_as_cubes() -> TestResult {
+    let Some(device) = device("layers_are_bound_as_cubes") else { return Ok(()) };
+    let mut graph = Graph::new();
+    let desc = TextureDesc::new(Extent::absolute(SIDE, SIDE), Format::Rgba8Unorm).layers(6);
+    let cube = graph.texture("cube", desc);
+    let clear = Intent::Clear(ClearValue::Color([1.0; 4]));
+    let cube = graph.add_fn("fill", |pass| pass.copy_target(cube, clear))?;
+    let cube = graph.add_fn("use", |pass| {
+        pass.side_effect();
+        pass.sampled(cube)
+    })?;
+    let plan = planned(&device, &graph, &Options::for_frame(SIDE, SIDE), |_| {})?;
+    let (mut executor, mut bound) = (Executor::new(device.gpu())?, 0);
+    executor.execute(&plan, Imports::new(), |cx| {
+        if cx.pass_name() == "use" {
+            let access = cx.plan().graph().access_of(cube).ok_or("the pass samples the cube")?;
+            let shape = ViewShape { kind: Some(vk::ImageViewType::CUBE), ..ViewShape::default() };
+            bound += usize::from(cx.bind(access, shape)?.view != vk::ImageView::null());
+        }
+        Ok(())
+    })?;
+    executor.wait()?;
+    assert_eq!((bound, device.messages()), (1, Vec::new()));
     Ok(())
 }
