@@ -152,7 +152,14 @@ fn contents(
     Ok(found)
 }
 
-/// Largest difference of two lists of bytes.
-pub fn difference(a: &[u8], b: &[u8]) -> u8 {
-    a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+/// Asserts that the same textures are kept, and that no byte differs by more than `limit`.
+#[track_caller]
+pub fn assert_contents(expected: &Ran, found: &Ran, limit: u8, place: &str) {
+    let shape =
+        |ran: &Ran| -> Vec<_> { ran.contents.iter().map(|(name, bytes)| (name.clone(), bytes.len())).collect() };
+    assert_eq!(shape(found), shape(expected), "{place}");
+    for ((name, a), (_, b)) in expected.contents.iter().zip(&found.contents) {
+        let difference = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+        assert!(difference <= limit, "{place}, {name}: {difference}");
+    }
 }
