@@ -54,7 +54,7 @@ pub struct Executor {
     dirty: bool,
 }
 
-/// An exported resource or the newest image of a history.
+/// An exported resource or the newest image of a history. See [`Executor::exported`] for how long it is valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exported {
     /// The image; null for a buffer.
@@ -259,7 +259,7 @@ impl Executor {
     }
 
     /// Returns the object of an export or history, with the contents of the last frame; `None` for other resources.
-    /// It stays valid until another plan is prepared or the executor is dropped.
+    /// It stays valid until another plan is prepared, a frame fails, or the executor is dropped. Later frames overwrite it.
     #[must_use]
     pub fn exported(&self, id: ResourceId) -> Option<Exported> {
         let prepared = self.prepared.as_ref()?;
