@@ -39,7 +39,7 @@ pub(crate) fn begin(gpu: &Gpu, slot: &mut FrameSlot, steps: u32) -> Result<(), E
     Ok(())
 }
 
-/// Marks the timestamps of a complete frame as in use. Those of other frames may never have been reset.
+/// Marks the timestamps of a complete frame as in use. A frame that fails may not have reset its timestamps.
 pub(crate) fn end(slot: &mut FrameSlot, steps: u32) {
     if let Some((.., count)) = &mut slot.queries {
         *count = 2 * steps;
