@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::gpu::Gpu;
+use crate::prepared::concurrent_families;
 use crate::resources::requirements;
 use crate::shape::Shape;
 use framegraph::{Alias, Caps, Desc, Extent, Graph, Options, Placement, Plan, ResourceId, Scratch, compile};
@@ -60,12 +61,10 @@ impl Gpu {
     pub fn share_memory(&self, plan: &Plan, schedule: &Schedule) -> Result<SharedMemory, Error> {
         let mut alignment = 1;
         let mut sizes: Vec<u64> = plan.resources().iter().map(|row| row.bytes).collect();
-        let mut families: Vec<u32> = self.shared.queues.iter().map(|queue| queue.family).collect();
-        families.dedup();
+        let families = concurrent_families(&self.shared.queues);
         for (at, row) in plan.resources().iter().enumerate() {
             if matches!(row.placement, Placement::Slot(_) | Placement::Heap { .. }) {
-                let shared: &[u32] = if families.len() > 1 { &families } else { &[] };
-                let needs = requirements(self, plan, ResourceId::at(at), shared)?;
+                let needs = requirements(self, plan, ResourceId::at(at), &families)?;
                 (sizes[at], alignment) = (sizes[at].max(needs.size), alignment.max(needs.alignment));
             }
         }

@@ -116,7 +116,7 @@ impl<'a> Cx<'a> {
     }
 
     /// The render pass of a raster step, for pipelines; null for other steps. It stays the same until another plan is
-    /// prepared.
+    /// prepared or a frame fails.
     #[must_use]
     pub fn render_pass(&self) -> vk::RenderPass {
         self.prepared.render_pass.unwrap_or_default()
@@ -239,6 +239,8 @@ impl<'a> Cx<'a> {
     }
 
     fn thing(&self, id: ResourceId) -> Option<Thing> {
+        // The identifier may be that of another graph.
+        self.plan.graph().resources().get(id.index())?;
         self.imports.rows.get(&id).map(|row| row.thing).or_else(|| self.resources.of(id))
     }
 

@@ -54,6 +54,25 @@ pub enum Error {
         /// Number of queues given to [`Gpu::new`](crate::Gpu::new).
         given: usize,
     },
+    /// The plan is compiled for more than the device has.
+    Caps {
+        /// Field of [`Caps`](framegraph::Caps).
+        capability: &'static str,
+        /// Value of the plan; 0 and 1 for flags.
+        wanted: String,
+        /// Value of the device.
+        given: String,
+    },
+    /// A pass draws more layers than the device has views
+    /// ([`ExecutorOptions::multiview`](crate::ExecutorOptions::multiview)).
+    Views {
+        /// Name of the first pass of the step.
+        pass: String,
+        /// Number of layers.
+        wanted: u32,
+        /// Number of views (`maxMultiviewViewCount`, at most 32).
+        limit: u32,
+    },
     /// A command needs a resource on a queue that does not own it.
     Owner {
         /// Name of the resource.
@@ -114,6 +133,14 @@ impl fmt::Display for Error {
             Self::Queues { wanted, given } => {
                 write!(f, "schedule: it uses {wanted} queues and the device has {given}; schedule for fewer queues")
             }
+            Self::Caps { capability, wanted, given } => write!(
+                f,
+                "plan: it is compiled for `{capability}` {wanted} and the device has {given}; compile it for `Gpu::caps`"
+            ),
+            Self::Views { pass, wanted, limit } => write!(
+                f,
+                "{pass}: it draws {wanted} layers and the device has {limit} views; draw fewer or disable `multiview`"
+            ),
             Self::Owner { resource, queue, owner } => write!(
                 f,
                 "{resource}: queue {queue} uses it while queue {owner} owns it; add an ownership transfer to the commands"

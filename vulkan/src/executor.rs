@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::imports::Imports;
 use crate::lanes::{FrameSlot, Lanes};
 use crate::layouts::Layouts;
-use crate::prepared::Prepared;
+use crate::prepared::{Prepared, check};
 use crate::resources::MemoryReport;
 use crate::run::Run;
 use crate::views::Views;
@@ -50,9 +50,11 @@ pub struct Executor {
     executed: Counts,
     barriers: u64,
     times_us: Vec<Option<f64>>,
+    /// A frame began and did not end: it failed, or its recorder panicked.
+    dirty: bool,
 }
 
-/// An exported resource or the newest image of a history.
+/// An exported resource or the newest image of a history. See [`Executor::exported`] for how long it is valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exported {
     /// The image; null for a buffer.
@@ -87,6 +89,7 @@ impl Executor {
             executed: Counts::default(),
             barriers: 0,
             times_us: Vec::new(),
+            dirty: false,
         })
     }
 
@@ -94,8 +97,8 @@ impl Executor {
     /// Histories with the same name and shape keep their contents. Waits for the GPU.
     ///
     /// # Errors
-    /// Fails if the device cannot create what the plan needs, or the schedule does not fit the device. The executor
-    /// then has no plan.
+    /// Fails if the device cannot execute the plan or its schedule; the executor then keeps the earlier plan. Fails if
+    /// the device cannot create what the plan needs; the executor then has no plan and no histories.
     ///
     /// # Panics
     /// Panics if `schedule` belongs to another plan.
@@ -114,6 +117,8 @@ impl Executor {
         schedule: Option<&Schedule>,
         commands: Vec<Command>,
     ) -> Result<(), Error> {
+        check(&self.gpu, plan, schedule, &commands, self.options.multiview)?;
+        self.recover()?;
         let mut earlier = self.release()?;
         let rings = earlier.as_mut().map_or_else(Vec::new, |earlier| earlier.resources.take_rings());
         if let Some(mut earlier) = earlier {
@@ -126,40 +131,55 @@ impl Executor {
     }
 
     /// Executes one frame of a plan. `record` is called for each pass that runs, in order, with the command buffer and
-    /// the resources of the pass. Prepares the plan for one queue if another one is prepared.
+    /// the resources of the pass. Takes `imports`, which are promised for one frame. Prepares the plan for one queue if another one is prepared.
     ///
     /// # Errors
     /// Fails if an import is not bound, a Vulkan call fails, or `record` returns an error. The frame is then not
-    /// complete, and histories start anew.
+    /// complete, and histories start anew. If `record` panics, the next frame starts them anew.
     pub fn execute(
         &mut self,
         plan: &Plan,
-        imports: &Imports,
+        imports: Imports,
         mut record: impl FnMut(&mut Cx<'_>) -> Result<(), RecordError>,
     ) -> Result<(), Error> {
+        self.recover()?;
         if self.prepared.as_ref().is_none_or(|prepared| prepared.plan.compilation() != plan.compilation()) {
             self.prepare(plan, None)?;
         }
         if let Some(id) = imports.missing(plan) {
             return Err(Error::Import { resource: plan.graph().resource_name(id).to_owned() });
         }
-        let result = self.run(imports, &mut record);
-        if result.is_err() {
+        self.dirty = true;
+        let result = self.run(&imports, &mut record);
+        if result.is_ok() {
+            self.dirty = false;
+        } else {
+            // The first error is the cause. If this fails too, the next call tries it again.
+            let _ = self.recover();
+        }
+        result
+    }
+
+    /// Drops a frame that did not end, with the prepared plan. Waits for the GPU.
+    fn recover(&mut self) -> Result<(), Error> {
+        if self.dirty {
             self.lanes.abandon();
             if let Some(mut prepared) = self.release()? {
                 prepared.destroy(&self.gpu.shared.driver);
             }
+            self.dirty = false;
         }
-        result
+        Ok(())
     }
 
     fn run(&mut self, imports: &Imports, record: crate::run::Recorder<'_>) -> Result<(), Error> {
         let slot = &mut self.slots[(self.frame % FRAMES as u64) as usize];
         slot.reclaim(&self.gpu)?;
         let prepared = self.prepared.as_mut().ok_or(Error::NotPrepared)?;
+        let steps = prepared.plan.steps().len() as u32;
         if self.options.timing {
             crate::timing::read(&self.gpu, slot, &mut self.times_us)?;
-            crate::timing::begin(&self.gpu, slot, prepared.plan.steps().len() as u32)?;
+            crate::timing::begin(&self.gpu, slot, steps)?;
         }
         let queues = self.lanes.rows.len();
         let mut run = Run {
@@ -177,13 +197,15 @@ impl Executor {
             open: vec![None; queues],
         };
         run.all(record)?;
+        crate::timing::end(run.slot, steps);
         (self.executed, self.barriers) = (run.executed, run.barriers);
         self.frame += 1;
         prepared.resources.advance();
         Ok(())
     }
 
-    /// Waits until the GPU has finished all frames.
+    /// Waits until the GPU has finished all frames. The CPU can then read what they wrote to mapped memory: each frame
+    /// ends with a memory dependency to the host.
     ///
     /// # Errors
     /// Fails if the device is lost.
@@ -237,7 +259,7 @@ impl Executor {
     }
 
     /// Returns the object of an export or history, with the contents of the last frame; `None` for other resources.
-    /// It stays valid until another plan is prepared or the executor is dropped.
+    /// It stays valid until another plan is prepared, a frame fails, or the executor is dropped. Later frames overwrite it.
     #[must_use]
     pub fn exported(&self, id: ResourceId) -> Option<Exported> {
         let prepared = self.prepared.as_ref()?;
@@ -254,7 +276,7 @@ impl Executor {
     #[must_use]
     pub fn layout(&self, id: ResourceId, image: vk::Image, mip: u32, layer: u32, plane: u32) -> vk::ImageLayout {
         let part = self.prepared.as_ref().and_then(|prepared| {
-            let desc = prepared.plan.graph().resources()[id.index()].desc;
+            let desc = prepared.plan.graph().resources().get(id.index())?.desc;
             let part = crate::shape::Part { mip, layer, plane };
             Some(part.index(desc.texture()?, prepared.plan.frame()))
         });

@@ -57,6 +57,8 @@ pub(crate) struct Shared {
     pub(crate) features: DeviceFeatures,
     pub(crate) properties: vk::PhysicalDeviceProperties,
     depth_resolves: vk::ResolveModeFlags,
+    /// Number of views of multiview that a render pass may have; its masks have 32 bits.
+    pub(crate) max_views: u32,
     /// Owner of the device, if it is to be kept open.
     #[cfg(feature = "testing")]
     keep: Option<Arc<dyn std::any::Any + Send + Sync>>,
@@ -85,9 +87,11 @@ impl Gpu {
         assert!(!desc.queues.is_empty(), "a device needs at least one queue");
         let GpuDesc { instance, physical, device, queues, features } = *desc;
         // SAFETY: the caller promises that the physical device belongs to the instance, and both are alive.
-        let (memory, families, properties, depth_resolves) = unsafe {
+        let (memory, families, properties, depth_resolves, max_views) = unsafe {
             let mut resolves = vk::PhysicalDeviceDepthStencilResolveProperties::default();
-            let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut resolves);
+            let mut views = vk::PhysicalDeviceMultiviewProperties::default();
+            let mut properties =
+                vk::PhysicalDeviceProperties2::default().push_next(&mut resolves).push_next(&mut views);
             instance.get_physical_device_properties2(physical, &mut properties);
             let properties = properties.properties;
             (
@@ -95,6 +99,7 @@ impl Gpu {
                 instance.get_physical_device_queue_family_properties(physical),
                 properties,
                 resolves.supported_depth_resolve_modes,
+                views.max_multiview_view_count.min(32),
             )
         };
         let driver = Driver::new(instance, device, features, memory);
@@ -108,6 +113,7 @@ impl Gpu {
             features,
             properties,
             depth_resolves,
+            max_views,
             #[cfg(feature = "testing")]
             keep: None,
         };
@@ -163,6 +169,8 @@ impl Gpu {
         Caps {
             name: self.name(),
             max_color_attachments: limits.max_color_attachments.min(8) as u8,
+            max_attached_layers: limits.max_framebuffer_layers,
+            max_volume_texels: limits.max_image_dimension3_d,
             max_texture_texels: limits.max_image_dimension2_d,
             max_texture_layers: limits.max_image_array_layers,
             max_buffer_bytes: u64::from(limits.max_storage_buffer_range),

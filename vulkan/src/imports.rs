@@ -17,8 +17,9 @@ pub(crate) struct Import {
     pub(crate) leave: Option<vk::ImageLayout>,
 }
 
-/// Images and buffers of the engine by import, for one frame.
-#[derive(Clone, Default)]
+/// Images and buffers of the engine by import, for one frame. [`Executor::execute`](crate::Executor::execute) takes the
+/// list, because layouts and binary semaphores are promised once.
+#[derive(Default)]
 pub struct Imports {
     pub(crate) rows: BTreeMap<ResourceId, Import>,
     /// Semaphores that the frame waits for and signals.
@@ -59,7 +60,11 @@ impl Imports {
 
     /// Leaves a bound image in this layout after the frame, for example for presenting. Does nothing if the import is
     /// not bound.
-    pub fn leave_in(&mut self, import: ResourceId, layout: vk::ImageLayout) {
+    ///
+    /// # Safety
+    /// The usage of the image and the extensions of the device allow the layout, which is neither `UNDEFINED` nor
+    /// `PREINITIALIZED`.
+    pub unsafe fn leave_in(&mut self, import: ResourceId, layout: vk::ImageLayout) {
         if let Some(row) = self.rows.get_mut(&import) {
             row.leave = Some(layout);
         }

@@ -14,6 +14,7 @@ mod gpu;
 mod imports;
 mod lanes;
 mod layouts;
+mod limits;
 mod owners;
 mod prepared;
 mod render_pass;

@@ -2,7 +2,8 @@
 
 use crate::driver::{Driver, Object};
 use crate::error::Error;
-use crate::gpu::Gpu;
+use crate::gpu::{DeviceQueue, Gpu};
+use crate::limits::{check_caps, check_views};
 use crate::owners::check_owners;
 use crate::resources::{Resources, Ring};
 use crate::subpass::{Subpass, subpasses};
@@ -32,8 +33,41 @@ pub(crate) struct PreparedStep {
     pub(crate) render_pass: Option<vk::RenderPass>,
 }
 
+/// Fails if a plan cannot be executed on the device. Creates nothing.
+pub(crate) fn check(
+    gpu: &Gpu,
+    plan: &Plan,
+    schedule: Option<&Schedule>,
+    commands: &[Command],
+    multiview: bool,
+) -> Result<(), Error> {
+    if !plan.caps().explicit_barriers {
+        return Err(Error::NoBarriers);
+    }
+    if plan.counts().inlined > 0 {
+        return Err(Error::Inlined);
+    }
+    check_caps(plan.caps(), &gpu.caps())?;
+    if multiview {
+        check_views(gpu, plan)?;
+    }
+    let (wanted, given) = (schedule.map_or(1, |schedule| schedule.layout.queues.len()), gpu.shared.queues.len());
+    if wanted > given {
+        return Err(Error::Queues { wanted, given });
+    }
+    check_owners(plan, schedule, commands)
+}
+
+/// Returns the families of queues for concurrent sharing. Empty for queues of one family, which need none.
+pub(crate) fn concurrent_families(queues: &[DeviceQueue]) -> Vec<u32> {
+    let mut families: Vec<u32> = queues.iter().map(|queue| queue.family).collect();
+    families.sort_unstable();
+    families.dedup();
+    if families.len() > 1 { families } else { Vec::new() }
+}
+
 impl Prepared {
-    /// Creates the objects of a plan.
+    /// Creates the objects of a plan that [`check`] accepts. Takes over or destroys the histories of an earlier plan.
     pub(crate) fn new(
         gpu: &Gpu,
         plan: &Plan,
@@ -41,22 +75,8 @@ impl Prepared {
         commands: Vec<Command>,
         rings: Vec<Ring>,
     ) -> Result<Self, Error> {
-        if !plan.caps().explicit_barriers {
-            return Err(Error::NoBarriers);
-        }
-        if plan.counts().inlined > 0 {
-            return Err(Error::Inlined);
-        }
         let queues = schedule.map_or(1, |schedule| schedule.layout.queues.len());
-        if queues > gpu.shared.queues.len() {
-            return Err(Error::Queues { wanted: queues, given: gpu.shared.queues.len() });
-        }
-        check_owners(plan, schedule, &commands)?;
-        let mut families: Vec<u32> = gpu.shared.queues[..queues].iter().map(|queue| queue.family).collect();
-        families.sort_unstable();
-        families.dedup();
-        // Queues of one family need no concurrent sharing.
-        let families = if families.len() > 1 { families } else { Vec::new() };
+        let families = concurrent_families(&gpu.shared.queues[..queues]);
         let (mut resources, result) = Resources::new(gpu, plan, &commands, &families, rings);
         if let Err(error) = result {
             resources.destroy(&gpu.shared.driver);

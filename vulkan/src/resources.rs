@@ -132,7 +132,7 @@ impl Resources {
             let ring = &self.rings[*ring];
             return Some(ring.things[(ring.head + ring.things.len() - age) % ring.things.len()]);
         }
-        self.things[id.index()]
+        self.things.get(id.index()).copied().flatten()
     }
 
     /// Returns the object of an export, or the image of a history that the last frame wrote.
@@ -142,7 +142,8 @@ impl Resources {
             let ring = &self.rings[*ring];
             return Some(ring.things[(ring.head + 2 * ring.things.len() - 1 - age) % ring.things.len()]);
         }
-        self.things[id.index()].filter(|_| plan.resources()[id.index()].placement == Placement::Own)
+        let own = plan.resources().get(id.index())?.placement == Placement::Own;
+        self.things.get(id.index()).copied().flatten().filter(|_| own)
     }
 
     /// Advances histories by one frame.

@@ -238,8 +238,10 @@ impl Run<'_> {
     fn end(&mut self) -> Result<(), Error> {
         for (id, import) in &self.imports.rows {
             let (Some(leave), plan) = (import.leave, &self.prepared.plan) else { continue };
-            let desc = plan.graph().resources()[id.index()].desc;
-            let Some(desc) = desc.texture() else { continue };
+            // The identifier may be that of another graph.
+            let Some(desc) = plan.graph().resources().get(id.index()).and_then(|row| row.desc.texture()) else {
+                continue;
+            };
             let all = 0..parts(desc, plan.frame(), desc.format);
             let old = |layouts: &Layouts, _: u32, _: Format, part: u32| layouts.get(import.thing, part);
             let pending = &mut self.lanes.rows[0].pending;
@@ -250,9 +252,9 @@ impl Run<'_> {
                 self.lanes.submit(self.gpu, self.slot, lane, &[], &[])?;
             }
         }
-        if self.lanes.has_work(0) || !self.imports.signals.is_empty() {
-            self.lanes.submit(self.gpu, self.slot, 0, &[], &self.imports.signals)?;
-        }
+        // The first queue has waited for the others, so that this covers their writes too.
+        self.lanes.rows[0].pending.memory.push(Scope::TO_HOST);
+        self.lanes.submit(self.gpu, self.slot, 0, &[], &self.imports.signals)?;
         let rows = self.prepared.plan.resources();
         self.executed.memoryless = rows.iter().filter(|row| row.placement == Placement::Memoryless).count() as u32;
         self.executed.culled = self.prepared.plan.pass_steps().iter().filter(|step| step.is_none()).count() as u32;

@@ -76,6 +76,10 @@ impl Shape {
         if desc.dimension == Dimension::D3 && usage.contains(vk::ImageUsageFlags::COLOR_ATTACHMENT) {
             flags |= vk::ImageCreateFlags::TYPE_2D_ARRAY_COMPATIBLE;
         }
+        if desc.dimension == Dimension::D2 && width == height && layers >= 6 && desc.samples == 1 {
+            // `ViewShape::kind` can be a cube.
+            flags |= vk::ImageCreateFlags::CUBE_COMPATIBLE;
+        }
         if self.srgb_views {
             // Storage usage does not apply to views in the sRGB format.
             flags |= vk::ImageCreateFlags::MUTABLE_FORMAT | vk::ImageCreateFlags::EXTENDED_USAGE;
@@ -146,9 +150,10 @@ impl Part {
         Self { mip: index % mips, layer: index / mips % layers, plane: index / mips / layers }
     }
 
-    /// Returns the index of the part.
+    /// Returns the index of the part. Slices of a three-dimensional texture belong to the part of their level.
     pub(crate) fn index(self, desc: &TextureDesc, frame: [u32; 2]) -> u32 {
-        (self.plane * desc.tracked_layers() + self.layer) * desc.mip_count(frame) + self.mip
+        let layer = if desc.dimension == Dimension::D3 { 0 } else { self.layer };
+        (self.plane * desc.tracked_layers() + layer) * desc.mip_count(frame) + self.mip
     }
 }
 

@@ -13,7 +13,7 @@ mod spirv;
 
 pub use device::{DeviceRequest, OpenError, TestDevice};
 pub use draw::{Bound, DepthTest, Dispatch, Draw};
-pub use imports::{WORD, imports};
+pub use imports::{WORD, imports, imports_again};
 pub use kit::Kit;
 pub use memory::Part;
 pub use mock::Mock;

@@ -28,7 +28,8 @@ pub struct ViewShape {
     pub mip: Option<u8>,
     /// Binds one plane of a depth-stencil texture, instead of the planes of the access.
     pub aspect: Option<Aspect>,
-    /// Overrides the type of the view, for example for cubes.
+    /// Overrides the type of the view, for example for cubes, which need square textures with six layers and one sample.
+    /// An import must have been created as compatible with the type.
     pub kind: Option<vk::ImageViewType>,
 }
 

@@ -17,7 +17,7 @@ impl Driver {
 
     /// Creates a buffer without memory.
     pub(crate) fn buffer(&self, info: &vk::BufferCreateInfo<'_>) -> Result<vk::Buffer, Error> {
-        // SAFETY: D2. Size and usage are not empty: `memory::buffer_info` sets both.
+        // SAFETY: D2. Size and usage are not empty: `Shape::buffer_info` sets both.
         unsafe { self.raw.create_buffer(info, None) }.map_err(Error::of("a buffer"))
     }
 
@@ -55,7 +55,7 @@ impl Driver {
 
     /// Binds memory to a new object.
     pub(crate) fn bind(&self, thing: Thing, memory: vk::DeviceMemory, offset: u64) -> Result<(), Error> {
-        // SAFETY: D1. The object is new. `memory::checked_place` compared type, alignment and size with the requirements.
+        // SAFETY: D1. The object is new. The caller compared type and alignment with the requirements, and allocated enough bytes.
         unsafe {
             match thing {
                 Thing::Image(image) => self.raw.bind_image_memory(image, memory, offset),

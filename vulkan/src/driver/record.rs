@@ -54,6 +54,10 @@ impl Scope {
         families: None,
     };
 
+    /// All earlier work before reads of mapped memory by the CPU, once it has waited for the GPU.
+    pub(crate) const TO_HOST: Self =
+        Self { to: vk::PipelineStageFlags2::HOST, to_access: vk::AccessFlags2::HOST_READ, ..Self::ALL };
+
     fn families(&self) -> [u32; 2] {
         self.families.unwrap_or([vk::QUEUE_FAMILY_IGNORED; 2])
     }

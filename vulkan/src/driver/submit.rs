@@ -96,7 +96,8 @@ impl Driver {
     pub(crate) fn ticks(&self, pool: vk::QueryPool, count: u32) -> Result<Vec<Option<u64>>, Error> {
         let mut rows = vec![[0_u64; 2]; count as usize];
         let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
-        // SAFETY: D1. Each row has a value and its availability.
+        // SAFETY: D1. Each row has a value and its availability. `timing::read` passes a count above 0, of queries that a
+        // complete frame has reset.
         match unsafe { self.raw.get_query_pool_results(pool, 0, &mut rows, flags) } {
             Ok(()) | Err(vk::Result::NOT_READY) => {}
             Err(result) => return Err(Error::Vulkan { of: "timestamps", result }),

@@ -32,6 +32,10 @@ impl Default for DeviceRequest {
 }
 
 /// A device that is closed when the last [`Gpu`] made from it is dropped.
+///
+/// # Panics
+/// Closing the device panics if the layers reported errors that [`TestDevice::messages`] has not returned, for example
+/// objects that were not destroyed.
 pub struct TestDevice {
     opened: Arc<Opened>,
     gpu: Gpu,
@@ -239,7 +243,9 @@ impl Drop for Opened {
                 debug.destroy_debug_utils_messenger(messenger, None);
             }
             self.instance.destroy_instance(None);
-            drop(Box::from_raw(self.messages));
+            let messages = Box::from_raw(self.messages).into_inner().unwrap_or_else(PoisonError::into_inner);
+            // For example, objects that were not destroyed.
+            assert!(messages.is_empty() || std::thread::panicking(), "the device was closed with {messages:#?}");
         }
     }
 }

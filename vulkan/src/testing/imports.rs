@@ -29,6 +29,15 @@ pub fn imports(kit: &mut Kit, plan: &Plan) -> Result<Imports, Error> {
     Ok(made)
 }
 
+/// Binds the same images and buffers for another frame.
+///
+/// # Safety
+/// The images are in the layouts that `imports` promises, and no kit or executor has destroyed them.
+#[must_use]
+pub unsafe fn imports_again(imports: &Imports) -> Imports {
+    Imports { rows: imports.rows.clone(), ..Imports::new() }
+}
+
 fn import(kit: &mut Kit, plan: &Plan, id: ResourceId, made: &mut Imports) -> Result<(), Error> {
     let graph = plan.graph();
     let mut shape = Shape::of(plan, id, &[]);

@@ -6,7 +6,7 @@ use super::draw::{Bound, DepthTest, Dispatch, Draw};
 use super::raster::raster;
 use super::spirv::{InputAttachment, spirv};
 use crate::cx::{BoundImage, Cx, RecordError};
-use crate::driver::{Driver, Object};
+use crate::driver::{Dependencies, Driver, Object, Scope};
 use crate::error::Error;
 use crate::gpu::Gpu;
 use ash::vk;
@@ -111,13 +111,14 @@ impl Kit {
         Ok(())
     }
 
-    /// Records commands, submits them to the first queue, and waits.
+    /// Records commands, submits them to the first queue, and waits. The CPU can then read what they wrote.
     pub(super) fn once(&mut self, record: impl FnOnce(&Driver, vk::CommandBuffer)) -> Result<(), Error> {
         let (driver, queue) = (&self.gpu.shared.driver, self.gpu.shared.queues[0]);
         let pool = driver.command_pool(queue.family)?;
         self.objects.push(Object::CommandPool(pool));
         let commands = driver.begin_commands(pool)?;
         record(driver, commands);
+        driver.barriers(commands, &Dependencies { memory: vec![Scope::TO_HOST], ..Dependencies::default() });
         driver.end_commands(commands)?;
         let buffers = [commands];
         let info = vk::SubmitInfo::default().command_buffers(&buffers);

@@ -87,12 +87,19 @@ pub fn run(
     // Imports in a declared state have it before the first frame only.
     let frames = if plan.graph().resource_ids().any(left) { 1 } else { frames };
     for _ in 0..frames {
-        executor.execute(plan, &imports, |cx| mock.record(cx))?;
+        executor.execute(plan, again(&imports), |cx| mock.record(cx))?;
     }
     executor.wait()?;
     let contents = contents(&executor, &mut mock, plan, &imports)?;
     drop(mock);
     Ok(Ran { messages: device.messages(), contents, executor })
+}
+
+/// Binds the same images and buffers for another frame.
+#[allow(unsafe_code, reason = "imports are promises about handles")]
+pub fn again(imports: &Imports) -> Imports {
+    // SAFETY: the kit of the test is alive, and tests fail if the layers report another layout.
+    unsafe { testing::imports_again(imports) }
 }
 
 #[allow(unsafe_code, reason = "commands without their barriers race on the GPU")]
@@ -145,7 +152,14 @@ fn contents(
     Ok(found)
 }
 
-/// Largest difference of two lists of bytes.
-pub fn difference(a: &[u8], b: &[u8]) -> u8 {
-    a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+/// Asserts that the same textures are kept, and that no byte differs by more than `limit`.
+#[track_caller]
+pub fn assert_contents(expected: &Ran, found: &Ran, limit: u8, place: &str) {
+    let shape =
+        |ran: &Ran| -> Vec<_> { ran.contents.iter().map(|(name, bytes)| (name.clone(), bytes.len())).collect() };
+    assert_eq!(shape(found), shape(expected), "{place}");
+    for ((name, a), (_, b)) in expected.contents.iter().zip(&found.contents) {
+        let difference = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+        assert!(difference <= limit, "{place}, {name}: {difference}");
+    }
 }

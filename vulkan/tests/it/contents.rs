@@ -26,20 +26,24 @@ fn graph(seed: u64) -> Graph {
     generate::graph(&mut Entropy::seeded(seed), &profile)
 }
 
-/// Executes a graph with one combination of options, on two queues for every third graph.
-fn run(device: &TestDevice, seed: u64, number: u32) -> TestResult<Verdict> {
+/// Compiles and executes a graph with one combination of options, on two queues for every third graph. Returns the reason
+/// if it is not compiled; every error of the execution fails the test.
+fn run(device: &TestDevice, seed: u64, number: u32) -> TestResult<Result<Verdict, String>> {
     let mut options = generate::options_of(number);
     let on_two = seed % 3 == 2;
     if on_two {
         options.alias = Alias::Off;
     }
-    let case = Case::new(device, graph(seed), &options)?;
+    let case = match Case::new(device, graph(seed), &options) {
+        Ok(case) => case,
+        Err(why) => return Ok(Err(why.to_string())),
+    };
     if !on_two {
-        return case.run(None);
+        return case.run(None).map(Ok);
     }
     let costs: Vec<f64> = (0..case.plan.steps().len()).map(|step| (step * 101) as f64 % 400.0).collect();
     let found = schedule(&case.plan, &QueueLayout::async_compute(), &costs)?;
-    case.run(Some(&found))
+    case.run(Some(&found)).map(Ok)
 }
 
 /// Returns the number in an environment variable.
@@ -56,7 +60,8 @@ fn random_graphs_leave_the_contents_of_the_simulation() -> TestResult {
     let mut seed = first;
     while executed < wanted && seed < first + 4 * wanted {
         for number in [0, seed as u32, 32 + seed as u32 % 32] {
-            match run(&device, seed, number) {
+            let ran = run(&device, seed, number);
+            match ran.map_err(|error| format!("seed {seed}, options {number}: {error}"))? {
                 Ok(verdict) => {
                     executed += u64::from(number == 0);
                     let messages = device.messages();
@@ -73,8 +78,8 @@ fn random_graphs_leave_the_contents_of_the_simulation() -> TestResult {
                     total.add(&verdict);
                 }
                 Err(why) => {
-                    drop(device.messages());
-                    *refused.entry(why.to_string().lines().next().unwrap_or_default().to_owned()).or_default() += 1;
+                    assert_eq!(device.messages(), [""; 0], "seed {seed}, options {number}");
+                    *refused.entry(why.lines().next().unwrap_or_default().to_owned()).or_default() += 1;
                     break;
                 }
             }
@@ -88,6 +93,7 @@ fn random_graphs_leave_the_contents_of_the_simulation() -> TestResult {
         seed - first
     );
     assert!(executed >= wanted && parts > 2 * wanted && digests > wanted, "{executed} of {wanted}");
+    assert!(in_tile > 0 && subpasses > 0, "{in_tile} reads in the tile, {subpasses} passes in later subpasses");
     Ok(())
 }
 
@@ -101,9 +107,9 @@ fn broken_loads_differ_from_the_simulation() -> TestResult {
             break;
         }
         let Ok(case) = Case::new(&device, graph(seed), &generate::options_of(0)) else { continue };
-        if !case.run(None).is_ok_and(|verdict| verdict.differences.is_empty()) {
-            continue;
-        }
+        let verdict = case.run(None).map_err(|error| format!("seed {seed}: {error}"))?;
+        assert!(verdict.differences.is_empty(), "seed {seed}:\n{}", verdict.differences.join("\n"));
+        assert_eq!(device.messages(), [""; 0], "seed {seed}");
         let mut broken = Vec::new();
         mutants(&case.plan, &mut |mutant| {
             let good = case.plan.attachments();

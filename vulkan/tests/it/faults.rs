@@ -4,7 +4,8 @@ use crate::bench::{FRAME, TestResult, device, frames, planned, run};
 use framegraph::{Alias, Options};
 use framegraph_queues::{Command, PlanStream};
 
-/// Without a barrier, the layers report a hazard or a wrong layout.
+/// Each barrier is left out alone, of one in three barriers in ordinary runs. Without it, the layers report a hazard or a
+/// wrong layout, except between accesses in one state.
 #[test]
 fn barriers_that_are_left_out_are_reported() -> TestResult {
     let Some(device) = device("barriers_that_are_left_out_are_reported") else { return Ok(()) };
@@ -15,7 +16,7 @@ fn barriers_that_are_left_out_are_reported() -> TestResult {
         let commands = plan.stream();
         let silent = run(&device, &plan, None, None, 1)?.messages;
         assert!(silent.is_empty(), "{name}: {}", silent[0]);
-        for left in test_report::share(0..plan.barriers().len() as u32).into_iter().step_by(2) {
+        for left in test_report::share(0..plan.barriers().len() as u32) {
             let kept = |c: &&Command| !matches!(c, Command::Barrier { barrier, .. } if *barrier == left);
             let without = commands.iter().filter(kept).copied().collect();
             let ran = run(&device, &plan, None, Some(without), 1)?;

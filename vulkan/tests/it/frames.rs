@@ -1,6 +1,6 @@
 //! Whole frames: validation is silent, counts are those of the plan, and contents do not depend on the plan.
 
-use crate::bench::{FRAME, TestResult, device, device_with, difference, frames, planned, run};
+use crate::bench::{FRAME, TestResult, assert_contents, device, device_with, frames, planned, run};
 use framegraph::{Alias, Caps, Options};
 use framegraph_vulkan::Synchronization;
 
@@ -22,9 +22,7 @@ fn frames_are_executed_silently_with_the_counts_of_their_plans() -> TestResult {
             assert_eq!(ran.executor.executed(), plan.counts(), "{name}, {alias:?}");
             assert_eq!(ran.executor.barriers(), plan.barriers().len() as u64, "{name}, {alias:?}");
             assert_eq!(ran.executor.step_times_us().len(), plan.steps().len(), "{name}, {alias:?}");
-            for ((what, a), (_, b)) in expected.contents.iter().zip(&ran.contents) {
-                assert!(difference(a, b) <= 1, "{name}, {alias:?}, {what}: {}", difference(a, b));
-            }
+            assert_contents(&expected, &ran, 1, &format!("{name}, {alias:?}"));
             let memory = ran.executor.memory();
             // Other frames keep nearly everything in the tile or in shadow maps.
             assert!(

@@ -2,7 +2,9 @@
 
 mod bench;
 mod contents;
+mod errors;
 mod faults;
 mod frames;
 mod post;
 mod queues;
+mod slices;

@@ -1,6 +1,6 @@
 //! Frames on two queues.
 
-use crate::bench::{FRAME, TestResult, device, difference, frames, planned, run};
+use crate::bench::{FRAME, TestResult, assert_contents, device, frames, planned, run};
 use framegraph::{Alias, Options, Plan};
 use framegraph_queues::{Command, PlanStream, QueueId, QueueLayout, Schedule, schedule};
 use framegraph_vulkan::testing::TestDevice;
@@ -26,9 +26,7 @@ fn frames_on_two_queues_are_silent_and_have_the_contents_of_one() -> TestResult 
         for commands in [plan.stream_on(&found), plan.stream_in(&found, &memory)] {
             let ran = run(&device, &plan, Some(&found), Some(commands), 3)?;
             assert!(ran.messages.is_empty(), "{name}: {}", ran.messages[0]);
-            for ((what, a), (_, b)) in expected.contents.iter().zip(&ran.contents) {
-                assert_eq!(difference(a, b), 0, "{name}, {what}");
-            }
+            assert_contents(&expected, &ran, 0, name);
             let moved = found.lanes.iter().filter(|lane| **lane != QueueId::MAIN).count();
             println!("{name}: {moved} steps on the second queue, {} submissions", ran.executor.submissions());
             assert!(moved == 0 || ran.executor.submissions() > 3, "{name}");

@@ -1,7 +1,7 @@
 //! Executes one graph frame after frame, and compares what is left with the simulation.
 
 use super::record::{Frame, Ranges};
-use crate::bench::TestResult;
+use crate::bench::{TestResult, again};
 use framegraph::{Desc, Exit, Graph, Kind, Options, PassFlags, PassKind, Plan, ResourceId, Scratch, Usage};
 use framegraph_queues::Schedule;
 use framegraph_vulkan::ash::vk;
@@ -104,7 +104,7 @@ impl<'d> Case<'d> {
                 in_tile: 0,
             };
             let mut subpasses = 0;
-            executor.execute(plan, &imports, |cx| {
+            executor.execute(plan, again(&imports), |cx| {
                 frame.record(cx)?;
                 frame.kit.write(frame.upload.buffer, &frame.uploaded)?;
                 subpasses += u64::from(cx.subpass() > 0);
