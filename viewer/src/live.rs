@@ -25,6 +25,8 @@ pub mod panel;
 pub mod preview;
 pub mod screen;
 pub mod settings_panel;
+#[cfg(test)]
+mod tests;
 mod times;
 
 use crate::history::History;

@@ -134,7 +134,7 @@ impl Live {
     }
 
     /// Lends the frame to another thread and waits for a moment; with [`Live::wait_for_frames`], works on this thread.
-    fn work(
+    pub(super) fn work(
         &mut self,
         doing: &str,
         session: &mut Session,
@@ -160,15 +160,27 @@ impl Live {
 
     /// Takes the frame back from the thread that works on it. Waits at most the given time.
     pub(super) fn collect(&mut self, session: &mut Session, at_most: Duration) {
-        if let Some(copied) = self.drawing.copying.as_ref().and_then(|job| job.wait(Duration::ZERO)) {
+        if let Some(copied) = self.drawing.copying.as_ref().and_then(Job::poll) {
             let made = self.drawing.copy.as_ref().map_or(0, |copy| copy.made) + 1;
+            let copied = copied.unwrap_or_else(|()| {
+                session.say("internal error: copying a picture ended without a result".into());
+                None
+            });
             let copied = copied.map(|(size_px, rgba8)| Copied { size_px, rgba8, made });
             (self.drawing.copying, self.drawing.copy) = (None, copied.or(self.drawing.copy.take()));
         }
         let Some((job, _)) = &self.drawing.job else { return };
-        if let Some((running, done)) = job.wait(at_most) {
-            self.drawing.job = None;
-            self.take_done(running, done, session);
+        let Some(result) = job.wait(at_most) else { return };
+        let failure = job.failure();
+        self.drawing.job = None;
+        match result {
+            Ok((running, done)) => self.take_done(running, done, session),
+            Err(()) => {
+                // The frame was lost with its thread.
+                self.drawing.stopped = false;
+                self.preview.interrupted();
+                session.say(format!("{failure}; load the scene again"));
+            }
         }
     }
 

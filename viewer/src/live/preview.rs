@@ -161,6 +161,11 @@ impl Preview {
         Some((target, inspector))
     }
 
+    /// Ends reading without a result, because the thread that read the texture panicked.
+    pub(super) fn interrupted(&mut self) {
+        self.reading = false;
+    }
+
     /// Takes the result of reading.
     pub(super) fn take(&mut self, inspector: Inspector, result: Result<Found, String>) {
         (self.inspector, self.reading) = (Some(inspector), false);
@@ -188,15 +193,20 @@ impl Preview {
             self.drawn = Some(wanted);
         }
         let patience = if blocking { Duration::from_secs(600) } else { PATIENCE };
-        if let Some(rgba8) = self.drawing.as_ref().and_then(|job| job.wait(patience)) {
-            self.drawing = None;
-            let made = self.picture.as_ref().map_or(0, |picture| picture.made) + 1;
-            if rgba8.len() == found.numbers.len() * 4 {
-                self.picture = Some(Picture { rgba8, size: found.texels.size, made });
-            } else {
-                // The texture changed in the meantime.
-                self.drawn = None;
-            }
+        let Some(job) = &self.drawing else { return };
+        let Some(result) = job.wait(patience) else { return };
+        let failure = job.failure();
+        self.drawing = None;
+        let Ok(rgba8) = result else {
+            (self.picture, self.error) = (None, Some(failure));
+            return;
+        };
+        let made = self.picture.as_ref().map_or(0, |picture| picture.made) + 1;
+        if rgba8.len() == found.numbers.len() * 4 {
+            self.picture = Some(Picture { rgba8, size: found.texels.size, made });
+        } else {
+            // The texture changed in the meantime.
+            self.drawn = None;
         }
     }
 }
