@@ -176,8 +176,8 @@ impl Live {
         match result {
             Ok((running, done)) => self.take_done(running, done, session),
             Err(()) => {
-                // The frame was lost with its thread.
-                self.drawing.stopped = false;
+                // The frame was lost with its thread, and light is of no use without it.
+                (self.drawing.stopped, self.relighting) = (false, None);
                 self.preview.interrupted();
                 session.say(format!("{failure}; load the scene again"));
             }

@@ -4,13 +4,17 @@ use super::*;
 use crate::what_if::WhatIf;
 use framegraph::Caps;
 use framegraph_passes::{FrameSettings, Preset};
+use framegraph_scene::environment::ShWindow;
 use framegraph_wgpu::{AdapterRequest, Gpu};
+use std::sync::mpsc::channel;
 
+/// Light setting that is not the default.
+const OTHER: ShWindow = ShWindow::Laplacian { lambda: 0.02 };
 /// Timeout of work on another thread.
 const PATIENCE: Duration = Duration::from_secs(300);
 
 /// Returns a loaded scene with its session; `None` without a device.
-fn loaded(test: &str, wake: impl Fn() + Send + Sync + 'static) -> Option<(Live, Session)> {
+fn loaded(test: &str, scene: &str, wake: impl Fn() + Send + Sync + 'static) -> Option<(Live, Session)> {
     let gpu = match Gpu::open(&AdapterRequest::from_env()) {
         Ok(gpu) => gpu,
         Err(error) => {
@@ -21,7 +25,7 @@ fn loaded(test: &str, wake: impl Fn() + Send + Sync + 'static) -> Option<(Live, 
     let mut session = Session::new(WhatIf::on(Caps::wgpu()), || {});
     let frame = FrameSettings { lod_error_px: 0.0, ..Preset::Low.frame() };
     let document = Document { frame, ..Document::default() };
-    let mut live = Live::new(Screen::new(&gpu, None), document, "columns", None, wake);
+    let mut live = Live::new(Screen::new(&gpu, None), document, scene, None, wake);
     assert!(live.settle(&mut session, PATIENCE) && live.running.is_some(), "{:?}", session.messages);
     Some((live, session))
 }
@@ -29,7 +33,7 @@ fn loaded(test: &str, wake: impl Fn() + Send + Sync + 'static) -> Option<(Live, 
 #[test]
 fn a_panic_while_drawing_is_reported_and_the_scene_can_be_loaded_again() {
     let name = "a_panic_while_drawing_is_reported_and_the_scene_can_be_loaded_again";
-    let Some((mut live, mut session)) = loaded(name, || {}) else { return };
+    let Some((mut live, mut session)) = loaded(name, "columns", || {}) else { return };
     live.work("drawing", &mut session, |_, _| panic!("expected by the test"));
     assert!(live.settle(&mut session, PATIENCE), "the work ends");
     let expected = "internal error: drawing ended without a result; load the scene again";
@@ -37,4 +41,82 @@ fn a_panic_while_drawing_is_reported_and_the_scene_can_be_loaded_again() {
     assert!(live.running.is_none() && !live.wants_frame());
     live.load("columns");
     assert!(live.settle(&mut session, PATIENCE) && live.wants_frame());
+}
+
+/// Requests other light with other settings, and waits until its preparation has begun.
+fn change_light(live: &mut Live, session: &mut Session, window: ShWindow) {
+    let mut document = live.document().clone();
+    document.frame.settings.shading.window = window;
+    live.set(document, false);
+    live.tick(session, 0.0);
+    assert_eq!(live.doing().map(|(doing, _)| doing), Some("preparing light"));
+}
+
+#[test]
+fn light_that_is_ready_while_another_thread_draws_is_kept() {
+    let name = "light_that_is_ready_while_another_thread_draws_is_kept";
+    let (sender, woken) = channel();
+    let wake = move || _ = sender.send(());
+    let Some((mut live, mut session)) = loaded(name, "columns", wake) else { return };
+    change_light(&mut live, &mut session, OTHER);
+    // Another thread has the frame while the light becomes ready.
+    let running = live.running.take();
+    for ready in ["the scene", "the light"] {
+        woken.recv_timeout(PATIENCE).unwrap_or_else(|_| panic!("{ready} is ready"));
+    }
+    live.tick(&mut session, 0.0);
+    live.running = running;
+    live.tick(&mut session, 0.0);
+    let drawn = live.running.as_ref().map(|running| running.loaded.light_settings);
+    assert_eq!((drawn, live.doing()), (Some(live.light_settings()), None));
+    assert!(live.metered_ev100() != 0.0 && session.messages.is_empty());
+}
+
+#[test]
+fn stopped_light_is_not_prepared_again_until_it_changes() {
+    let name = "stopped_light_is_not_prepared_again_until_it_changes";
+    let Some((mut live, mut session)) = loaded(name, "columns", || {}) else { return };
+    let before = live.document().frame.settings.shading.window;
+    let light = live.light_settings();
+    for lent in [false, true] {
+        change_light(&mut live, &mut session, OTHER);
+        let running = if lent { live.running.take() } else { None };
+        live.cancel();
+        live.tick(&mut session, 0.0);
+        live.running = running.or(live.running.take());
+        live.tick(&mut session, 0.0);
+        assert_eq!(live.doing(), None, "lent: {lent}");
+        assert_eq!(live.running.as_ref().map(|running| running.loaded.light_settings), Some(light));
+        // An undone and repeated change is a new request.
+        let mut document = live.document().clone();
+        document.frame.settings.shading.window = before;
+        live.set(document, false);
+        live.tick(&mut session, 0.0);
+    }
+    // A custom sun of the clear sky is requested by the settings, too.
+    let mut document = live.document().clone();
+    document.capture.sun = capture::Sun::CUSTOM;
+    live.set(document, false);
+    live.tick(&mut session, 0.0);
+    assert!(live.doing().is_some());
+    live.cancel();
+    live.tick(&mut session, 0.0);
+    assert_eq!(live.doing(), None);
+}
+
+#[test]
+fn settings_are_never_saved_over_the_scene_while_another_thread_draws() {
+    let name = "settings_are_never_saved_over_the_scene_while_another_thread_draws";
+    let folder = std::env::temp_dir().join(format!("framegraph-viewer-live-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let scene = folder.join("scene.glb");
+    std::fs::copy("../tests/assets/models/suzi.glb", &scene).expect("a scene");
+    if let Some((mut live, _)) = loaded(name, &scene.to_string_lossy(), || {}) {
+        assert_eq!(live.read(), std::slice::from_ref(&scene));
+        live.running = None;
+        assert_eq!(live.read(), std::slice::from_ref(&scene));
+        let refused = live.save(&scene).expect_err("it is an input");
+        assert!(refused.contains("input"), "{refused}");
+    }
+    std::fs::remove_dir_all(folder).expect("it exists");
 }
