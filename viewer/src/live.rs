@@ -216,6 +216,12 @@ impl Live {
         loading.or_else(relighting).or_else(|| self.drawing.doing())
     }
 
+    /// Returns whether [`cancel`](Self::cancel) has an effect. Drawing can be cancelled only while pipelines are compiled
+    /// or debug modes are compared.
+    pub fn can_cancel(&self) -> bool {
+        self.loading.is_some() || self.relighting.is_some() || self.drawing.can_stop()
+    }
+
     /// Cancels the background work and keeps the displayed frame with its light. Pipelines that are being compiled are
     /// finished, and the settings that need them are undone.
     pub fn cancel(&mut self) {

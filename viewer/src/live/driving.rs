@@ -4,6 +4,7 @@
 //! some milliseconds. If it takes longer, they show the last picture and the progress.
 
 use super::bisecting::Bisecting;
+use super::capture::Document;
 use super::drawing::{Copied, Done};
 use super::frame::Running;
 use super::preview::read;
@@ -12,6 +13,7 @@ use crate::job::{Handle, Job};
 use crate::plan_data::PlanData;
 use crate::session::Session;
 use egui::TextureId;
+use framegraph_wgpu::debug::Modes;
 use framegraph_wgpu::read_texture;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -102,14 +104,16 @@ impl Live {
         }
         // Until new light is available, draw with the existing light.
         let lit = running.loaded.light_settings;
-        let mut drawn = self.document().clone();
+        let document = self.document().clone();
+        let mut drawn = document.clone();
         drawn.frame.settings.shading.bands = lit.image.bands;
         drawn.frame.settings.shading.table = lit.dfg.visibility;
         self.left = self.left.saturating_sub(1);
         let options = self.options.clone();
         self.work("compiling pipelines", session, move |running, handle| {
             let mut progress = |done, total| handle.step(done, total);
-            Done::Drawn(running.draw(size_px, &drawn, &options, &mut progress))
+            let result = running.draw(size_px, &drawn, &options, &mut progress);
+            Done::Drawn(Box::new((document, options.modes)), result)
         });
     }
 
@@ -201,28 +205,33 @@ impl Live {
     fn take_done(&mut self, running: Running, done: Done, session: &mut Session) {
         self.drawing.picture = running.picture();
         self.running = Some(running);
-        let stopped = std::mem::replace(&mut self.drawing.stopped, false);
         match done {
-            Done::Drawn(result) => {
-                if stopped && self.history.undo() {
+            Done::Drawn(drawn, result) => {
+                let undone = self.drawing.take_drawn(&drawn.0, self.history.now()) && self.history.undo();
+                if undone {
+                    // Stopping again must not undo an earlier change.
+                    self.drawing.last = Some(self.document().clone());
                     self.again();
                 }
                 if let Err(error) = result {
                     if self.refused.as_ref() != Some(&error) {
                         session.say(error.clone());
                     }
-                    (self.refused, self.left) = (Some(error), 0);
+                    if !undone {
+                        (self.refused, self.left) = (Some(error), 0);
+                    }
                     return;
                 }
                 self.clock.tick(Instant::now());
                 self.copy();
-                self.report(session);
+                self.report(*drawn, session);
             }
             Done::Read(read) => {
                 let (inspector, found) = *read;
                 self.preview.take(inspector, found);
             }
             Done::Bisected(result) => {
+                self.drawing.stopped = false;
                 match result {
                     Ok(bisecting) => self.bisecting = Some(*bisecting).filter(Bisecting::is_done),
                     Err(error) => session.say(error),
@@ -232,17 +241,16 @@ impl Live {
         }
     }
 
-    /// Passes plan and times to the session if it shows this frame.
-    fn report(&mut self, session: &mut Session) {
+    /// Passes plan and times of a drawn frame to the session if it shows this frame.
+    fn report(&mut self, drawn: (Document, Modes), session: &mut Session) {
         let Some(running) = &self.running else { return };
         let shows = session.is_live() || session.plan.is_none();
         if shows && running.plans() != self.reported_plans {
             let name = format!("live frame, {}", running.loaded.name);
-            let drawn = (self.history.now().clone(), self.options.modes.clone());
             let changed = self.reported_plans > 0 && drawn != self.drawn_with;
             match PlanData::of(running.plan(), &name) {
                 Ok(plan) => {
-                    let (planner, base) = running.planner(self.history.now(), &self.options.modes);
+                    let (planner, base) = running.planner(&drawn.0, &drawn.1);
                     session.show_live(planner, base, Arc::new(plan), changed);
                 }
                 Err(error) => session.say(error.to_string()),

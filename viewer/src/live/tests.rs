@@ -1,12 +1,14 @@
 //! Tests of a live frame that another thread works on.
 
+use super::drawing::Done;
 use super::*;
 use crate::what_if::WhatIf;
 use framegraph::Caps;
 use framegraph_passes::{FrameSettings, Preset};
 use framegraph_scene::environment::ShWindow;
+use framegraph_wgpu::debug::{Mode, Modes};
 use framegraph_wgpu::{AdapterRequest, Gpu};
-use std::sync::mpsc::channel;
+use std::sync::mpsc::{Sender, channel};
 
 /// Light setting that is not the default.
 const OTHER: ShWindow = ShWindow::Laplacian { lambda: 0.02 };
@@ -41,6 +43,73 @@ fn a_panic_while_drawing_is_reported_and_the_scene_can_be_loaded_again() {
     assert!(live.running.is_none() && !live.wants_frame());
     live.load("columns");
     assert!(live.settle(&mut session, PATIENCE) && live.wants_frame());
+}
+
+/// Begins to draw on another thread, which reports progress, and then waits until the returned sender is dropped.
+fn begin_frame(live: &mut Live, session: &mut Session, modes: Modes) -> Sender<()> {
+    let (go, wait) = channel::<()>();
+    let (begun, begins) = channel();
+    let (document, options) = (live.document().clone(), DrawOptions { modes, ..live.options.clone() });
+    live.work("compiling pipelines", session, move |running, handle| {
+        handle.step(1, 2);
+        let _ = begun.send(());
+        let _ = wait.recv();
+        let result = running.draw([64, 64], &document, &options, &mut |_, _| ());
+        Done::Drawn(Box::new((document, options.modes)), result)
+    });
+    begins.recv_timeout(PATIENCE).expect("the thread begins");
+    go
+}
+
+/// Changes a setting and returns the previous document.
+fn change(live: &mut Live, intensity: f32) -> Document {
+    let before = live.document().clone();
+    let mut document = before.clone();
+    document.capture.environment_intensity = intensity;
+    live.set(document, false);
+    before
+}
+
+#[test]
+fn stop_undoes_only_the_change_that_compiles_pipelines() {
+    let name = "stop_undoes_only_the_change_that_compiles_pipelines";
+    let Some((mut live, mut session)) = loaded(name, "columns", || {}) else { return };
+    drop(begin_frame(&mut live, &mut session, Modes::default()));
+    assert!(live.settle(&mut session, PATIENCE));
+    let before = change(&mut live, 2.0);
+    let go = begin_frame(&mut live, &mut session, Modes::default());
+    // The panels continue while the thread waits.
+    live.tick(&mut session, 0.0);
+    assert!(live.is_drawing() && live.can_cancel());
+    live.cancel();
+    drop(go);
+    assert!(live.settle(&mut session, PATIENCE));
+    assert_eq!(*live.document(), before, "the change is undone");
+    assert!(!live.can_cancel() && live.wants_frame());
+    // The repeated frame of these settings, for example at another size, undoes nothing more.
+    change(&mut live, 3.0);
+    drop(begin_frame(&mut live, &mut session, Modes::default()));
+    assert!(live.settle(&mut session, PATIENCE));
+    let go = begin_frame(&mut live, &mut session, Modes::default());
+    live.cancel();
+    drop(go);
+    assert!(live.settle(&mut session, PATIENCE));
+    assert_eq!(live.document().capture.environment_intensity, 3.0);
+    assert!(session.messages.is_empty(), "{:?}", session.messages);
+}
+
+#[test]
+fn the_plan_belongs_to_the_settings_that_were_drawn() {
+    let name = "the_plan_belongs_to_the_settings_that_were_drawn";
+    let Some((mut live, mut session)) = loaded(name, "columns", || {}) else { return };
+    let go = begin_frame(&mut live, &mut session, Modes(vec![Mode::NoCull]));
+    // The settings change while the frame is drawn.
+    let drawn = change(&mut live, 2.0);
+    drop(go);
+    assert!(live.settle(&mut session, PATIENCE));
+    assert_eq!(live.drawn_with, (drawn, Modes(vec![Mode::NoCull])));
+    let base = session.questions.as_ref().expect("a plan").asked.clone();
+    assert!(!base.cull, "the drawn mode disables culling");
 }
 
 /// Requests other light with other settings, and waits until its preparation has begun.

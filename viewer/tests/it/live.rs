@@ -158,7 +158,8 @@ fn pipelines_do_not_block_the_panels() {
         longest = longest.max(begun.elapsed());
         if live(&mut harness).is_drawing() {
             compiled = true;
-            if !std::mem::replace(&mut stopped, true) {
+            if !stopped && live(&mut harness).can_cancel() {
+                stopped = true;
                 live(&mut harness).cancel();
             }
         } else if compiled && !live(&mut harness).wants_frame() {
