@@ -7,7 +7,7 @@ use super::preview::Found;
 use crate::job::Job;
 use egui::TextureId;
 use framegraph_wgpu::debug::Modes;
-use framegraph_wgpu::inspect::Inspector;
+use framegraph_wgpu::inspect::{InspectTarget, Inspector};
 use std::time::{Duration, Instant};
 
 /// Time after which work on a frame is shown with its progress.
@@ -17,8 +17,8 @@ const LONG: Duration = Duration::from_millis(150);
 pub(super) enum Done {
     /// The frame of a document was drawn in debug modes.
     Drawn(Box<(Document, Modes)>, Result<(), String>),
-    /// A texture was read.
-    Read(Box<(Inspector, Result<Found, String>)>),
+    /// A subresource of a texture was read.
+    Read(Box<(Inspector, InspectTarget, Result<Found, String>)>),
     /// Debug modes were compared.
     Bisected(Result<Box<Bisecting>, String>),
 }

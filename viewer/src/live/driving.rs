@@ -124,8 +124,8 @@ impl Live {
         let Some((target, inspector)) = self.preview.begin(running, frame) else { return };
         let mut inspector = inspector;
         self.work("reading a texture", session, move |running, _| {
-            let found = read(running, &mut inspector, target);
-            Done::Read(Box::new((inspector, found)))
+            let found = read(running, &mut inspector, target.clone());
+            Done::Read(Box::new((inspector, target, found)))
         });
     }
 
@@ -227,8 +227,8 @@ impl Live {
                 self.report(*drawn, session);
             }
             Done::Read(read) => {
-                let (inspector, found) = *read;
-                self.preview.take(inspector, found);
+                let (inspector, target, found) = *read;
+                self.preview.take(inspector, &target, found);
             }
             Done::Bisected(result) => {
                 self.drawing.stopped = false;

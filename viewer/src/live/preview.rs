@@ -166,9 +166,14 @@ impl Preview {
         self.reading = false;
     }
 
-    /// Takes the result of reading.
-    pub(super) fn take(&mut self, inspector: Inspector, result: Result<Found, String>) {
+    /// Takes the result of reading a subresource. Ignores it if another one is selected by now.
+    pub(super) fn take(&mut self, inspector: Inspector, target: &InspectTarget, result: Result<Found, String>) {
         (self.inspector, self.reading) = (Some(inspector), false);
+        let is_listed = self.name.is_some() && self.name.as_ref() == self.listed.as_ref().map(|(name, _)| name);
+        if !is_listed || self.target().as_ref() != Some(target) {
+            self.asked = None;
+            return;
+        }
         match result {
             Ok(found) => {
                 let looked = (self.name.clone().unwrap_or_default(), self.plane);

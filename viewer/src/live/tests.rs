@@ -7,6 +7,7 @@ use framegraph::Caps;
 use framegraph_passes::{FrameSettings, Preset};
 use framegraph_scene::environment::ShWindow;
 use framegraph_wgpu::debug::{Mode, Modes};
+use framegraph_wgpu::inspect::all_targets;
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::sync::mpsc::{Sender, channel};
 
@@ -188,4 +189,40 @@ fn settings_are_never_saved_over_the_scene_while_another_thread_draws() {
         assert!(refused.contains("input"), "{refused}");
     }
     std::fs::remove_dir_all(folder).expect("it exists");
+}
+
+#[test]
+fn a_texture_is_shown_only_while_it_is_selected() {
+    let name = "a_texture_is_shown_only_while_it_is_selected";
+    let Some((mut live, mut session)) = loaded(name, "columns", || {}) else { return };
+    drop(begin_frame(&mut live, &mut session, Modes::default()));
+    assert!(live.settle(&mut session, PATIENCE));
+    let textures = {
+        let mut names: Vec<_> = all_targets(live.running.as_ref().expect("a frame").plan());
+        names.retain(|target| target.number > 0);
+        names.dedup_by(|a, b| a.name == b.name);
+        [names[0].name.clone(), names[1].name.clone()]
+    };
+    let begin = |live: &mut Live, texture: &str| {
+        live.preview.look_at(texture);
+        let (running, preview) = (live.running.as_ref().expect("a frame"), &mut live.preview);
+        let (target, mut inspector) = preview.begin(running, 0).expect("a new selection");
+        let found = preview::read(running, &mut inspector, target.clone());
+        assert!(found.is_ok() && preview.is_reading());
+        (inspector, target, found)
+    };
+    let (inspector, target, found) = begin(&mut live, &textures[0]);
+    // Another texture is selected before the first one has been read.
+    live.preview.look_at(&textures[1]);
+    live.preview.take(inspector, &target, found);
+    assert!(live.preview.found.is_none() && !live.preview.is_reading());
+    let (inspector, target, found) = begin(&mut live, &textures[1]);
+    live.preview.take(inspector, &target, found);
+    let title = |live: &Live| live.preview.found.as_ref().map(|found| found.title.clone()).expect("texels");
+    assert!(title(&live).starts_with(&textures[1]), "{}", title(&live));
+    // An error of the first texture does not belong to the second one either.
+    let (inspector, target, _) = begin(&mut live, &textures[0]);
+    live.preview.look_at(&textures[1]);
+    live.preview.take(inspector, &target, Err("an error".into()));
+    assert!(live.preview.error.is_none() && title(&live).starts_with(&textures[1]));
 }
