@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::time::Duration;
 
 /// State shared by the work and its owner.
@@ -36,7 +36,8 @@ pub struct Job<T> {
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Starts the work on a new thread. `wake` is called when a result is available to [`poll`](Self::poll).
+    /// Starts the work on a new thread. `wake` is called when [`poll`](Self::poll) returns a result, also if the work
+    /// panics.
     pub fn start(
         doing: impl Into<String>,
         wake: impl FnOnce() + Send + 'static,
@@ -46,15 +47,18 @@ impl<T: Send + 'static> Job<T> {
         let handle = Handle::default();
         let theirs = handle.clone();
         std::thread::spawn(move || {
+            let mut wake = Wake(Some(wake));
+            // A panic drops variables in reverse order: the sender first, so that the woken owner finds no result.
+            let sender = sender;
             // Sending fails if the owner is gone.
-            if sender.send(work(&theirs)).is_ok() {
-                wake();
+            if sender.send(work(&theirs)).is_err() {
+                wake.0 = None;
             }
         });
         Self { doing: doing.into(), handle, result }
     }
 
-    /// Returns the result if available; `Some(Err(()))` if the work ended without one.
+    /// Returns the result if available; `Some(Err(()))` if the work panicked.
     pub fn poll(&self) -> Option<Result<T, ()>> {
         match self.result.try_recv() {
             Ok(result) => Some(Ok(result)),
@@ -68,9 +72,18 @@ impl<T: Send + 'static> Job<T> {
         self.handle.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Waits for the result, at most the given time.
-    pub fn wait(&self, at_most: Duration) -> Option<T> {
-        self.result.recv_timeout(at_most).ok()
+    /// Waits for the result, at most the given time; `Some(Err(()))` if the work panicked.
+    pub fn wait(&self, at_most: Duration) -> Option<Result<T, ()>> {
+        match self.result.recv_timeout(at_most) {
+            Ok(result) => Some(Ok(result)),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => Some(Err(())),
+        }
+    }
+
+    /// Returns the message for work that panicked.
+    pub fn failure(&self) -> String {
+        format!("internal error: {} ended without a result", self.doing)
     }
 
     /// Returns the completed fraction, 0 to 1; `None` while unknown.
@@ -83,5 +96,41 @@ impl<T: Send + 'static> Job<T> {
 impl<T> Drop for Job<T> {
     fn drop(&mut self) {
         self.handle.cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Wakes the owner on drop, and thereby also after a panic.
+struct Wake<W: FnOnce()>(Option<W>);
+
+impl<W: FnOnce()> Drop for Wake<W> {
+    fn drop(&mut self) {
+        if let Some(wake) = self.0.take() {
+            wake();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_wakes_the_owner_and_is_no_timeout() {
+        let (wake, woken) = channel();
+        let wakes = |wake: &std::sync::mpsc::Sender<()>| {
+            let wake = wake.clone();
+            move || _ = wake.send(())
+        };
+        let job: Job<u32> = Job::start("panicking", wakes(&wake), |_| panic!("expected by the test"));
+        woken.recv_timeout(Duration::from_secs(60)).expect("a panic wakes the owner");
+        assert_eq!((job.poll(), job.wait(Duration::ZERO)), (Some(Err(())), Some(Err(()))));
+        assert_eq!(job.failure(), "internal error: panicking ended without a result");
+
+        let (go, wait) = channel::<()>();
+        let job = Job::start("waiting", wakes(&wake), move |_| wait.recv().is_ok());
+        assert_eq!((job.poll(), job.wait(Duration::ZERO)), (None, None), "it is still running");
+        go.send(()).expect("it waits");
+        woken.recv_timeout(Duration::from_secs(60)).expect("a result wakes the owner");
+        assert_eq!(job.wait(Duration::ZERO), Some(Ok(true)));
     }
 }

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `screen.rs` | the device, and registration of textures with egui |
 //! | `loading.rs` | a scene and its light, loaded in the background |
+//! | `shown.rs`, `relighting.rs` | the displayed scene; new light after changes |
 //! | `capture.rs`, `factors.rs`, `camera.rs` | exposure, lens, light and animation; edited materials; the interactive camera |
 //! | `frame.rs` | the frame, executed repeatedly |
 //! | `settings_panel.rs`, `file_request.rs` | state of the settings panel; file dialogs that panels request |
@@ -23,8 +24,12 @@ pub mod frame;
 pub mod loading;
 pub mod panel;
 pub mod preview;
+mod relighting;
 pub mod screen;
 pub mod settings_panel;
+mod shown;
+#[cfg(test)]
+mod tests;
 mod times;
 
 use crate::history::History;
@@ -32,7 +37,7 @@ use crate::job::Job;
 use crate::session::Session;
 use bisecting::Bisecting;
 use camera::Rig;
-use capture::{Document, Sun};
+use capture::Document;
 use file_request::FileRequest;
 use frame::{DrawOptions, Running};
 use loading::{EnvironmentSource, Lit, Loaded};
@@ -40,6 +45,7 @@ use preview::Preview;
 use program::input;
 use program::outputs::Outputs;
 use screen::Screen;
+use shown::{LightRequest, Shown};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -83,7 +89,11 @@ pub struct Live {
     /// State of the settings panel.
     pub settings: settings_panel::SettingsPanel,
     loading: Option<Job<JobResult<(Loaded, Vec<String>)>>>,
-    relighting: Option<Job<JobResult<Lit>>>,
+    relighting: Option<(Job<JobResult<Lit>>, LightRequest)>,
+    /// Light that the user stopped or that failed.
+    declined: Option<LightRequest>,
+    /// Displayed scene; `None` until it is loaded.
+    shown: Option<Shown>,
     wanted: EnvironmentSource,
     /// Number of frames still to draw.
     left: u32,
@@ -124,6 +134,8 @@ impl Live {
             settings: settings_panel::SettingsPanel::default(),
             loading: None,
             relighting: None,
+            declined: None,
+            shown: None,
             wanted,
             left: AFTER_CHANGE,
             reported_plans: 0,
@@ -140,8 +152,8 @@ impl Live {
 
     /// Loads a scene in the background. The displayed scene stays until loading succeeds.
     pub fn load(&mut self, name: &str) {
-        let shown = self.running.as_ref().map(|running| &running.loaded).filter(|loaded| loaded.name == name);
-        let variant = shown.and_then(|loaded| loaded.variant.clone());
+        let shown = self.shown.as_ref().filter(|shown| shown.name == name);
+        let variant = shown.and_then(|shown| shown.variant.clone());
         self.load_variant(name, variant);
     }
 
@@ -163,7 +175,7 @@ impl Live {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match ending.as_deref() {
             Some("gltf" | "glb") => self.load(&path.to_string_lossy()),
-            Some("hdr" | "exr" | "ktx" | "ktx2") => self.wanted = EnvironmentSource::File(path.to_owned()),
+            Some("hdr" | "exr" | "ktx" | "ktx2") => self.set_environment(Some(path.to_owned())),
             Some("ron") => {
                 let name = path.to_string_lossy();
                 let says_frame = || input::text(path, input::MAX_TEXT_BYTES).is_ok_and(|t| t.contains("frame: ("));
@@ -200,28 +212,23 @@ impl Live {
     /// Returns the description and progress of the background work.
     pub fn doing(&self) -> Option<(&str, Option<f32>)> {
         let loading = self.loading.as_ref().map(|job| (job.doing.as_str(), job.progress()));
-        let relighting = || self.relighting.as_ref().map(|job| (job.doing.as_str(), job.progress()));
+        let relighting = || self.relighting.as_ref().map(|(job, _)| (job.doing.as_str(), job.progress()));
         loading.or_else(relighting).or_else(|| self.drawing.doing())
     }
 
-    /// Cancels the background work and keeps the displayed frame. Pipelines that are being compiled are finished, and
-    /// the settings that need them are undone.
-    pub fn cancel(&mut self) {
-        if self.loading.is_none() && self.relighting.is_none() {
-            self.drawing.stop();
-        }
-        self.loading = None;
-        if self.relighting.take().is_some()
-            && let Some(running) = &self.running
-        {
-            self.wanted = running.loaded.environment.clone();
-        }
+    /// Returns whether [`cancel`](Self::cancel) has an effect. Drawing can be cancelled only while pipelines are compiled
+    /// or debug modes are compared.
+    pub fn can_cancel(&self) -> bool {
+        self.loading.is_some() || self.relighting.is_some() || self.drawing.can_stop()
     }
 
-    /// Returns the light settings of the current settings.
-    fn light_settings(&self) -> framegraph_passes::light::shading::LightSettings {
-        let frame = &self.document().frame;
-        frame.settings.shading.light(frame.quality)
+    /// Cancels the background work and keeps the displayed frame with its light. Pipelines that are being compiled are
+    /// finished, and the settings that need them are undone.
+    pub fn cancel(&mut self) {
+        let loading = self.loading.take().is_some();
+        if !self.stop_relighting() && !loading {
+            self.drawing.stop();
+        }
     }
 
     /// Applies finished background work and advances the animation.
@@ -234,6 +241,7 @@ impl Live {
                     self.preview = Preview::default();
                     self.bisecting = None;
                     self.wanted = loaded.environment.clone();
+                    (self.shown, self.declined) = (Some(Shown::of(&loaded)), None);
                     let mut capture = self.document().capture;
                     capture.animation = None;
                     let materials = std::collections::BTreeMap::new();
@@ -279,50 +287,6 @@ impl Live {
         false
     }
 
-    /// Creates new light if the settings or the sun of a clear sky require it.
-    fn relight(&mut self, session: &mut Session) {
-        if let Some(result) = self.relighting.as_ref().and_then(Job::poll) {
-            self.relighting = None;
-            match (result, &mut self.running) {
-                (Ok(Ok(lit)), Some(running)) => {
-                    running.relight(lit);
-                    self.again();
-                }
-                (Ok(Err(error)), Some(running)) => {
-                    session.say(error);
-                    self.wanted = running.loaded.environment.clone();
-                }
-                _ => {}
-            }
-        }
-        let sun = self.document().capture.sun;
-        if let EnvironmentSource::Sky(own) = &mut self.wanted {
-            *own = if let Sun::Custom { .. } = sun { sun.toward() } else { None };
-        }
-        let (settings, levels) = (self.light_settings(), self.document().frame.lod_error_px > 0.0);
-        let Some(loaded) = self.running.as_mut().map(|running| &mut running.loaded) else { return };
-        if self.loading.is_none() && levels && !std::mem::replace(&mut loaded.levels, true) {
-            let name = loaded.name.clone();
-            return self.load(&name);
-        }
-        let other = loaded.environment != self.wanted || loaded.light_settings != settings;
-        if !other || self.relighting.is_some() || self.loading.is_some() || self.refused.is_some() {
-            return;
-        }
-        let (gpu, environment, wake) = (self.screen.gpu.clone(), self.wanted.clone(), self.wake.clone());
-        // Light depends on the ground color and the lights, but not on materials.
-        let scene = framegraph_scene::Scene {
-            ground_albedo: loaded.scene.ground_albedo,
-            lights: loaded.lights.clone(),
-            ..framegraph_scene::Scene::default()
-        };
-        self.relighting = Some(Job::start(
-            "preparing light",
-            move || wake(),
-            move |handle| loading::light(&gpu, &scene, &environment, &settings, handle),
-        ));
-    }
-
     /// Shows the plan of this frame again after a file was shown.
     pub fn show_plan(&mut self, session: &mut Session) {
         session.forget_plan();
@@ -351,7 +315,12 @@ impl Live {
 
     /// Returns the input files of the displayed frame.
     pub fn read(&self) -> Vec<PathBuf> {
-        self.running.iter().flat_map(|running| running.loaded.files()).cloned().collect()
+        self.shown.as_ref().map_or_else(Vec::new, Shown::files)
+    }
+
+    /// Returns the metered exposure value at ISO 100; 0 until the scene is loaded.
+    pub fn metered_ev100(&self) -> f32 {
+        self.shown.as_ref().map_or(0.0, |shown| shown.metered_ev100)
     }
 
     /// Returns the name of the current or requested environment.
@@ -362,6 +331,7 @@ impl Live {
     /// Lights the scene with a clear sky or an environment picture.
     pub fn set_environment(&mut self, path: Option<PathBuf>) {
         self.wanted = path.map_or(EnvironmentSource::Sky(None), EnvironmentSource::File);
+        self.declined = None;
         self.again();
     }
 }

@@ -1,11 +1,16 @@
 //! State of the window that is kept between runs: arrangement of the panes with their front tabs, theme, size, and recent
 //! files.
 
+use program::input;
+#[cfg(feature = "window")]
+use program::outputs::Outputs;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Maximum number of recent files.
 const RECENT: usize = 10;
+/// Maximum size of the file in bytes.
+const MAX_BYTES: u64 = 1 << 20;
 
 /// Kept state. Missing fields have their defaults.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -35,17 +40,18 @@ impl Remembered {
 
     /// Reads the state. An unreadable or damaged file gives the defaults.
     pub fn read(file: &Path) -> Self {
-        let text = std::fs::read_to_string(file).unwrap_or_default();
+        let text = input::text(file, MAX_BYTES).unwrap_or_default();
         let mut read: Self = serde_json::from_str(&text).unwrap_or_default();
         read.size = read.size.filter(|size| size.iter().all(|side| (100.0..=16384.0).contains(side)));
         read.recent.truncate(RECENT);
         read
     }
 
-    /// Writes the state. Failures are ignored, because no work is lost.
+    /// Writes the state, completely or not at all. Failures are ignored, because no work is lost.
+    #[cfg(feature = "window")]
     pub fn write(&self, file: &Path) {
         let _ = file.parent().map(std::fs::create_dir_all);
-        let _ = serde_json::to_string(self).map(|text| std::fs::write(file, text));
+        let _ = serde_json::to_string(self).map(|text| Outputs::one(file, text.as_bytes()));
     }
 }
 
@@ -57,7 +63,7 @@ pub fn add_recent(recent: &mut Vec<PathBuf>, path: &Path) {
     recent.truncate(RECENT);
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "window"))]
 mod tests {
     use super::*;
 
@@ -77,6 +83,13 @@ mod tests {
         assert_eq!(Remembered::read(&file), Remembered::default());
         std::fs::write(&file, "no state").expect("a file");
         assert_eq!(Remembered::read(&file), Remembered::default());
+        // A file that is too large is not read, and writing replaces the file without leftovers.
+        let padded = format!("{}{}", serde_json::to_string(&kept).expect("text"), " ".repeat(MAX_BYTES as usize));
+        std::fs::write(&file, padded).expect("a file");
+        assert_eq!(Remembered::read(&file), Remembered::default());
+        kept.write(&file);
+        assert_eq!(Remembered::read(&file), kept);
+        assert_eq!(std::fs::read_dir(folder.join("state")).expect("a folder").count(), 1);
         std::fs::remove_dir_all(folder).expect("it exists");
     }
 }

@@ -165,6 +165,8 @@ impl App for Program {
             if let Some(running) = self.viewer.live.as_ref().and_then(|live| live.running.as_ref()) {
                 program::line(format_args!("{} of the scene", running.drawn()));
             }
+            // A run of a fixed length is automated, and does not change the window of the user.
+            return;
         }
         let Some(path) = &self.kept else { return };
         let (panes, recent) = (self.viewer.arrangement(), self.viewer.recent.clone());

@@ -1,6 +1,6 @@
 //! Drawings of the views, created when a view is first shown; those of large plans on a separate thread.
 
-use crate::drawing::Drawing;
+use crate::drawing::{Drawing, Ink};
 use crate::job::Job;
 use crate::plan_data::PlanData;
 use crate::session::Session;
@@ -46,7 +46,7 @@ impl Drawings {
                 self.made.insert(view, drawn(view, session));
             } else {
                 let job = self.jobs.entry(view).or_insert_with(|| background(view, session, wake));
-                let drawing = job.wait(PATIENCE)?;
+                let drawing = job.wait(PATIENCE)?.unwrap_or_else(|()| failed(&job.failure()));
                 self.jobs.remove(&view);
                 self.made.insert(view, drawing);
             }
@@ -58,6 +58,13 @@ impl Drawings {
     pub fn existing(&self, view: View) -> Option<&Drawing> {
         self.made.get(&view)
     }
+}
+
+/// Returns a drawing that shows an error, so that the work is not repeated in every frame.
+fn failed(message: &str) -> Drawing {
+    let mut drawing = Drawing::default();
+    drawing.text([8.0, 16.0], 12.0, Ink::Worse, message);
+    drawing
 }
 
 /// Creates the drawing of a view on this thread.

@@ -4,6 +4,7 @@
 //! some milliseconds. If it takes longer, they show the last picture and the progress.
 
 use super::bisecting::Bisecting;
+use super::capture::Document;
 use super::drawing::{Copied, Done};
 use super::frame::Running;
 use super::preview::read;
@@ -12,6 +13,7 @@ use crate::job::{Handle, Job};
 use crate::plan_data::PlanData;
 use crate::session::Session;
 use egui::TextureId;
+use framegraph_wgpu::debug::Modes;
 use framegraph_wgpu::read_texture;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -102,14 +104,16 @@ impl Live {
         }
         // Until new light is available, draw with the existing light.
         let lit = running.loaded.light_settings;
-        let mut drawn = self.document().clone();
+        let document = self.document().clone();
+        let mut drawn = document.clone();
         drawn.frame.settings.shading.bands = lit.image.bands;
         drawn.frame.settings.shading.table = lit.dfg.visibility;
         self.left = self.left.saturating_sub(1);
         let options = self.options.clone();
         self.work("compiling pipelines", session, move |running, handle| {
             let mut progress = |done, total| handle.step(done, total);
-            Done::Drawn(running.draw(size_px, &drawn, &options, &mut progress))
+            let result = running.draw(size_px, &drawn, &options, &mut progress);
+            Done::Drawn(Box::new((document, options.modes)), result)
         });
     }
 
@@ -120,8 +124,8 @@ impl Live {
         let Some((target, inspector)) = self.preview.begin(running, frame) else { return };
         let mut inspector = inspector;
         self.work("reading a texture", session, move |running, _| {
-            let found = read(running, &mut inspector, target);
-            Done::Read(Box::new((inspector, found)))
+            let found = read(running, &mut inspector, target.clone());
+            Done::Read(Box::new((inspector, target, found)))
         });
     }
 
@@ -134,7 +138,7 @@ impl Live {
     }
 
     /// Lends the frame to another thread and waits for a moment; with [`Live::wait_for_frames`], works on this thread.
-    fn work(
+    pub(super) fn work(
         &mut self,
         doing: &str,
         session: &mut Session,
@@ -160,15 +164,27 @@ impl Live {
 
     /// Takes the frame back from the thread that works on it. Waits at most the given time.
     pub(super) fn collect(&mut self, session: &mut Session, at_most: Duration) {
-        if let Some(copied) = self.drawing.copying.as_ref().and_then(|job| job.wait(Duration::ZERO)) {
+        if let Some(copied) = self.drawing.copying.as_ref().and_then(Job::poll) {
             let made = self.drawing.copy.as_ref().map_or(0, |copy| copy.made) + 1;
+            let copied = copied.unwrap_or_else(|()| {
+                session.say("internal error: copying a picture ended without a result".into());
+                None
+            });
             let copied = copied.map(|(size_px, rgba8)| Copied { size_px, rgba8, made });
             (self.drawing.copying, self.drawing.copy) = (None, copied.or(self.drawing.copy.take()));
         }
         let Some((job, _)) = &self.drawing.job else { return };
-        if let Some((running, done)) = job.wait(at_most) {
-            self.drawing.job = None;
-            self.take_done(running, done, session);
+        let Some(result) = job.wait(at_most) else { return };
+        let failure = job.failure();
+        self.drawing.job = None;
+        match result {
+            Ok((running, done)) => self.take_done(running, done, session),
+            Err(()) => {
+                // The frame was lost with its thread, and light is of no use without it.
+                (self.drawing.stopped, self.relighting) = (false, None);
+                self.preview.interrupted();
+                session.say(format!("{failure}; load the scene again"));
+            }
         }
     }
 
@@ -189,28 +205,33 @@ impl Live {
     fn take_done(&mut self, running: Running, done: Done, session: &mut Session) {
         self.drawing.picture = running.picture();
         self.running = Some(running);
-        let stopped = std::mem::replace(&mut self.drawing.stopped, false);
         match done {
-            Done::Drawn(result) => {
-                if stopped && self.history.undo() {
+            Done::Drawn(drawn, result) => {
+                let undone = self.drawing.take_drawn(&drawn.0, self.history.now()) && self.history.undo();
+                if undone {
+                    // Stopping again must not undo an earlier change.
+                    self.drawing.last = Some(self.document().clone());
                     self.again();
                 }
                 if let Err(error) = result {
                     if self.refused.as_ref() != Some(&error) {
                         session.say(error.clone());
                     }
-                    (self.refused, self.left) = (Some(error), 0);
+                    if !undone {
+                        (self.refused, self.left) = (Some(error), 0);
+                    }
                     return;
                 }
                 self.clock.tick(Instant::now());
                 self.copy();
-                self.report(session);
+                self.report(*drawn, session);
             }
             Done::Read(read) => {
-                let (inspector, found) = *read;
-                self.preview.take(inspector, found);
+                let (inspector, target, found) = *read;
+                self.preview.take(inspector, &target, found);
             }
             Done::Bisected(result) => {
+                self.drawing.stopped = false;
                 match result {
                     Ok(bisecting) => self.bisecting = Some(*bisecting).filter(Bisecting::is_done),
                     Err(error) => session.say(error),
@@ -220,17 +241,16 @@ impl Live {
         }
     }
 
-    /// Passes plan and times to the session if it shows this frame.
-    fn report(&mut self, session: &mut Session) {
+    /// Passes plan and times of a drawn frame to the session if it shows this frame.
+    fn report(&mut self, drawn: (Document, Modes), session: &mut Session) {
         let Some(running) = &self.running else { return };
         let shows = session.is_live() || session.plan.is_none();
         if shows && running.plans() != self.reported_plans {
             let name = format!("live frame, {}", running.loaded.name);
-            let drawn = (self.history.now().clone(), self.options.modes.clone());
             let changed = self.reported_plans > 0 && drawn != self.drawn_with;
             match PlanData::of(running.plan(), &name) {
                 Ok(plan) => {
-                    let (planner, base) = running.planner(self.history.now(), &self.options.modes);
+                    let (planner, base) = running.planner(&drawn.0, &drawn.1);
                     session.show_live(planner, base, Arc::new(plan), changed);
                 }
                 Err(error) => session.say(error.to_string()),

@@ -192,12 +192,6 @@ fn sky(scene: &Scene, toward: Option<DVec3>) -> Sky {
 }
 
 impl Loaded {
-    /// Returns the input files of the scene and its light, which exports must not overwrite.
-    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        let environment = if let EnvironmentSource::File(file) = &self.environment { Some(file) } else { None };
-        self.scene.files.iter().chain(environment)
-    }
-
     /// Replaces the light.
     pub fn relight(&mut self, lit: Lit) {
         let Lit { environment, settings, lighting, sun, background, metered_ev100, .. } = lit;

@@ -161,9 +161,19 @@ impl Preview {
         Some((target, inspector))
     }
 
-    /// Takes the result of reading.
-    pub(super) fn take(&mut self, inspector: Inspector, result: Result<Found, String>) {
+    /// Ends reading without a result, because the thread that read the texture panicked.
+    pub(super) fn interrupted(&mut self) {
+        self.reading = false;
+    }
+
+    /// Takes the result of reading a subresource. Ignores it if another one is selected by now.
+    pub(super) fn take(&mut self, inspector: Inspector, target: &InspectTarget, result: Result<Found, String>) {
         (self.inspector, self.reading) = (Some(inspector), false);
+        let is_listed = self.name.is_some() && self.name.as_ref() == self.listed.as_ref().map(|(name, _)| name);
+        if !is_listed || self.target().as_ref() != Some(target) {
+            self.asked = None;
+            return;
+        }
         match result {
             Ok(found) => {
                 let looked = (self.name.clone().unwrap_or_default(), self.plane);
@@ -188,15 +198,20 @@ impl Preview {
             self.drawn = Some(wanted);
         }
         let patience = if blocking { Duration::from_secs(600) } else { PATIENCE };
-        if let Some(rgba8) = self.drawing.as_ref().and_then(|job| job.wait(patience)) {
-            self.drawing = None;
-            let made = self.picture.as_ref().map_or(0, |picture| picture.made) + 1;
-            if rgba8.len() == found.numbers.len() * 4 {
-                self.picture = Some(Picture { rgba8, size: found.texels.size, made });
-            } else {
-                // The texture changed in the meantime.
-                self.drawn = None;
-            }
+        let Some(job) = &self.drawing else { return };
+        let Some(result) = job.wait(patience) else { return };
+        let failure = job.failure();
+        self.drawing = None;
+        let Ok(rgba8) = result else {
+            (self.picture, self.error) = (None, Some(failure));
+            return;
+        };
+        let made = self.picture.as_ref().map_or(0, |picture| picture.made) + 1;
+        if rgba8.len() == found.numbers.len() * 4 {
+            self.picture = Some(Picture { rgba8, size: found.texels.size, made });
+        } else {
+            // The texture changed in the meantime.
+            self.drawn = None;
         }
     }
 }

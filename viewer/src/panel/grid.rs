@@ -2,6 +2,8 @@
 
 mod minimap;
 mod rows;
+#[cfg(all(test, feature = "window"))]
+mod tests;
 mod view;
 
 pub use rows::{Options, Row, Sort};
@@ -266,7 +268,9 @@ impl Grid {
         ];
         for (key, by) in moves {
             if pressed(key) && !resources.is_empty() {
-                let next = row.map_or(0, |row| (row as i64 + by).clamp(0, resources.len() as i64 - 1) as usize);
+                let last = resources.len() - 1;
+                let begin = if key == Key::End { last } else { 0 };
+                let next = row.map_or(begin, |row| (row as i64 + by).clamp(0, last as i64) as usize);
                 return Clicked::Item(Item::Resource(resources[next]));
             }
         }

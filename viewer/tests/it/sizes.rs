@@ -26,16 +26,18 @@ fn panes() -> impl Iterator<Item = Pane> {
     View::ALL.into_iter().map(Pane::View).chain([Pane::List, Pane::WhatIf])
 }
 
-/// Shows one frame of the viewer at a size, with some events.
-pub fn frame(ctx: &Context, viewer: &mut Viewer, size: [f32; 2], events: Vec<Event>) {
+/// Shows one frame of the viewer at a size, with some events. Returns the number of painted shapes.
+pub fn frame(ctx: &Context, viewer: &mut Viewer, size: [f32; 2], events: Vec<Event>) -> usize {
     let input = RawInput {
         screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(size[0], size[1]))),
         events,
         ..RawInput::default()
     };
     let mut output = ctx.run_ui(input, |ui| viewer.show(ui));
+    let shapes = output.shapes.len();
     drop(ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point));
     output.textures_delta.clear();
+    shapes
 }
 
 fn shown_at_every_size(viewer: &mut Viewer) {

@@ -2,6 +2,7 @@
 
 use crate::{case, folder};
 use std::io::Read;
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use test_report::display::Display;
@@ -16,6 +17,13 @@ fn program(display: &Display, args: &[&str]) -> Command {
     command.env("XDG_STATE_HOME", folder(&format!("state{}", args.len())));
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command
+}
+
+/// Returns whether a program with that many arguments kept the state of its window.
+fn has_state(args: usize) -> bool {
+    let state = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("viewer/state{args}"));
+    assert!(state.is_dir(), "{}", state.display());
+    state.join("framegraph-viewer/window.json").exists()
 }
 
 /// Reports a skip without a display or a device.
@@ -38,6 +46,7 @@ fn a_window_draws_sixty_frames() {
     if !skipped(name, &message) {
         let frames = out.split_once(" frames").and_then(|(count, _)| count.parse::<u32>().ok());
         assert!(status.code() == Some(0) && frames >= Some(60), "{status}: {out}{message}");
+        assert!(!has_state(3), "a run of a fixed length keeps no state");
     }
 }
 
@@ -106,6 +115,7 @@ fn a_window_is_resized_hidden_and_closed() {
     let mut message = String::new();
     program.stderr.take().map(|mut err| err.read_to_string(&mut message));
     assert_eq!(status.and_then(|status| status.code()), Some(0), "{message}");
+    assert!(has_state(1));
     assert!(!message.contains("panicked"), "{message}");
 }
 

@@ -56,7 +56,7 @@ fn row(ui: &mut Ui, name: &str, widget: impl FnOnce(&mut Ui) -> egui::Response) 
 }
 
 fn exposure(ui: &mut Ui, live: &Live, capture: &mut Capture) {
-    let metered = live.running.as_ref().map_or(0.0, |running| running.loaded.metered_ev100);
+    let metered = live.metered_ev100();
     let now = capture.exposure.ev100(metered);
     ui.label("exposure");
     ui.horizontal(|ui| {

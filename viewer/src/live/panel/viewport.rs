@@ -70,7 +70,8 @@ fn bar(ui: &mut Ui, live: &mut Live, session: &mut Session) {
                 None => _ = ui.spinner(),
             }
             ui.label(doing);
-            if ui.button("Stop").on_hover_text("Cancel loading and keep the displayed frame").clicked() {
+            let tip = "Cancel the work and keep the displayed frame. Settings that need new pipelines are undone";
+            if live.can_cancel() && ui.button("Stop").on_hover_text(tip).clicked() {
                 live.cancel();
             }
             ui.separator();
