@@ -6,7 +6,7 @@ use framegraph_passes::effects::reflection::ReflectionSettings;
 use framegraph_passes::effects::taa::TaaSettings;
 use framegraph_passes::frame::scene_loop::SceneLoop;
 use framegraph_passes::gpu_scene::view::Background;
-use framegraph_passes::{CameraView, FrameIndex, Settings, StageError, ViewId, ViewSettings, standard};
+use framegraph_passes::{CameraView, FrameIndex, Settings, ViewId, ViewSettings, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{FrameLoop, wgpu};
@@ -55,7 +55,7 @@ fn by_hand(shown: &mut SceneLoop, first: &ViewSettings, follows: bool) -> Result
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8UnormSrgb);
             let picture = frame.graph_mut().import_texture("picture", desc, Entry::Undefined, Exit::Keep);
             imports.texture(picture, &texture);
-            standard(frame, &settings, Target::from(picture)).map_err(StageError::from)
+            standard(frame, &settings, Target::from(picture))
         })?;
         assert!(ran.is_some());
     }
