@@ -4,6 +4,7 @@ use crate::error::PassError;
 use crate::frame::world::{World, WorldError};
 use crate::frame::{Settings, standard};
 use crate::gpu_scene::lighting::{Lighting, LightingError};
+use crate::gpu_scene::shadow_views::ShadowSettings;
 use crate::gpu_scene::view::{Background, CameraView, ViewId, ViewSettings};
 use crate::stages::StageError;
 use framegraph::{Entry, Exit, Extent, Format, Target, TextureDesc};
@@ -14,6 +15,7 @@ use framegraph_wgpu::{
     AdapterRequest, FrameError, FrameLoop, Gpu, OpenError, Pixels, ReadbackError, SurfaceError, WindowSurface,
     format_of, read_texture,
 };
+use glam::DVec2;
 
 /// Draws a scene with the standard frame, into a window or a texture.
 ///
@@ -43,7 +45,20 @@ pub struct SceneLoop {
     /// Settings of the frame. Take effect in the next frame.
     pub settings: Settings,
     view: ViewSettings,
+    made: Made,
+    /// True if the current view was drawn.
+    is_drawn: bool,
+    /// View of the last drawn frame, if the current view was not drawn yet.
+    before: Option<CameraView>,
     target: Screen,
+}
+
+/// Values of [`Settings`] that a view depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Made {
+    shadows: Option<ShadowSettings>,
+    drawn_px: [u32; 2],
+    jitter_px: DVec2,
 }
 
 /// Target of the frames.
@@ -141,15 +156,21 @@ impl SceneLoop {
         let seen = CameraView::new(&scene, &lighting.image, &Background::Environment, &view);
         let world = World::new(gpu, &scene, lighting, [seen], &mut progress::silent)?;
         let frames = FrameLoop::new(gpu);
-        Ok(Self { gpu: gpu.clone(), frames, world, scene, settings: Settings::DEFAULT, view, target })
+        let settings = Settings::DEFAULT;
+        let made = Made { shadows: view.shadows, drawn_px: size_px, jitter_px: DVec2::ZERO };
+        let gpu = gpu.clone();
+        Ok(Self { gpu, frames, world, scene, settings, view, made, is_drawn: false, before: None, target })
     }
 
-    /// Returns the settings of the view.
+    /// Returns the settings of the view. Its shadows are those that were drawn last.
     pub fn view(&self) -> &ViewSettings {
         &self.view
     }
 
     /// Replaces camera, exposure and other settings of the view. Another size resizes texture or window surface.
+    ///
+    /// Shadow maps are those of [`SceneLoop::settings`]; `view.shadows` is ignored. Temporal effects reproject from the
+    /// last drawn frame, however often the view was replaced since.
     ///
     /// # Errors
     /// Fails if the device fails.
@@ -160,9 +181,46 @@ impl SceneLoop {
                 Screen::Texture(target) => *target = texture(&self.gpu, view.size_px),
             }
         }
-        let seen = CameraView::new(&self.scene, &self.world.lighting.image, &Background::Environment, &view);
-        self.world.set_view(&self.gpu, ViewId::MAIN, seen)?;
         self.view = view;
+        self.make_view()
+    }
+
+    /// Returns the values of the settings that the view of the next frame depends on.
+    fn needed(&self) -> Made {
+        let jitter_px = self.settings.taa.map_or(DVec2::ZERO, |taa| taa.jitter_px(self.world.frame_index.0));
+        Made { shadows: self.settings.shadows, drawn_px: self.settings.drawn_px(self.view.size_px), jitter_px }
+    }
+
+    /// Makes the view of the next frame.
+    fn make_view(&mut self) -> Result<(), SceneLoopError> {
+        let made = self.needed();
+        self.view.shadows = made.shadows;
+        if std::mem::take(&mut self.is_drawn) {
+            self.before = Some(self.world.views.get(ViewId::MAIN)?.view.clone());
+        }
+        let drawn = ViewSettings { size_px: made.drawn_px, ..self.view.clone() };
+        let light = &self.world.lighting.image;
+        let mut seen = CameraView::new(&self.scene, light, &Background::Environment, &drawn);
+        if let Some(before) = &self.before {
+            seen = seen.after(before);
+        }
+        seen.jitter(made.jitter_px);
+        self.world.set_view(&self.gpu, ViewId::MAIN, seen)?;
+        self.made = made;
+        Ok(())
+    }
+
+    /// Advances the view to the next frame.
+    fn next_view(&mut self) -> Result<(), SceneLoopError> {
+        let needed = self.needed();
+        if needed == self.made && !self.is_drawn {
+            return Ok(());
+        }
+        if !self.is_drawn || needed != (Made { jitter_px: needed.jitter_px, ..self.made }) {
+            return self.make_view();
+        }
+        self.world.views.again(ViewId::MAIN, needed.jitter_px)?;
+        (self.made, self.is_drawn) = (needed, false);
         Ok(())
     }
 
@@ -171,20 +229,23 @@ impl SceneLoop {
     /// # Errors
     /// Fails if the frame cannot be drawn. The next one starts clean.
     pub fn draw(&mut self) -> Result<bool, SceneLoopError> {
-        let Self { frames, world, scene, settings, view, target, .. } = self;
-        let image = match target {
+        let image = match &mut self.target {
             Screen::Window(surface) => match surface.acquire()? {
                 Some(image) => Some(image),
                 None => return Ok(false),
             },
             Screen::Texture(_) => None,
         };
+        self.next_view()?;
+        let Self { frames, world, scene, settings, view, target, .. } = self;
         let texture = match (&image, &*target) {
             (Some(image), _) => &image.texture,
             (None, Screen::Texture(texture)) => texture,
             (None, Screen::Window(_)) => return Ok(false),
         };
-        let settings = Settings { shadows: view.shadows, ..settings.for_scene(scene, view.size_px) };
+        let seen = &world.views.get(ViewId::MAIN)?.view;
+        let moving = settings.moving || (0..scene.instances.len()).any(|instance| seen.moves(instance));
+        let settings = Settings { moving, ..settings.for_scene(scene, settings.drawn_px(view.size_px)) };
         let format = format_of(texture.format()).unwrap_or(Format::Rgba8UnormSrgb);
         let ran = frames.run(view.size_px, world, |frame, imports| {
             let desc = TextureDesc::new(Extent::FRAME, format);
@@ -198,8 +259,12 @@ impl SceneLoop {
         if let (Screen::Window(surface), Some(image)) = (target, image) {
             surface.present(image);
         }
+        if ran.is_none() {
+            return Ok(false);
+        }
         self.world.frame_index.0 += 1;
-        Ok(ran.is_some())
+        (self.is_drawn, self.before) = (true, None);
+        Ok(true)
     }
 
     /// Returns the pixels of the last frame.
@@ -231,6 +296,7 @@ fn texture(gpu: &Gpu, size_px: [u32; 2]) -> wgpu::Texture {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::taa::TaaSettings;
 
     /// Draws on the noop device, which checks all calls.
     #[test]
@@ -244,6 +310,40 @@ mod tests {
         shown.settings.fxaa = false;
         assert!(shown.draw()?);
         assert_eq!((shown.pixels()?.texels, shown.world.frame_index.0), ([16, 16], 2));
+        Ok(())
+    }
+
+    /// A view follows the last drawn frame, its shadows are those of the settings, and skipped frames do not count.
+    #[test]
+    fn views_follow_drawn_frames() -> Result<(), SceneLoopError> {
+        let environment = Sky::default().environment(8)?;
+        let scene = Scene::open("columns", &mut progress::silent)?;
+        let mut shown = SceneLoop::on(&Gpu::noop()?, scene, &environment, [32, 18])?;
+        shown.settings.taa = Some(TaaSettings::DEFAULT);
+        assert!(shown.draw()?);
+        let first = shown.view().camera.eye;
+        let shifted = |view: &ViewSettings, size_px| {
+            let mut view = view.clone();
+            (view.camera.eye.x, view.size_px) = (view.camera.eye.x + 0.1, size_px);
+            view
+        };
+        shown.set_view(shifted(shown.view(), [32, 18]))?;
+        shown.set_view(shifted(shown.view(), [0, 18]))?;
+        assert!(!shown.draw()?, "a picture without width is skipped");
+        assert_eq!(shown.world.frame_index.0, 1);
+        shown.set_view(shifted(shown.view(), [32, 18]))?;
+        assert!(shown.draw()?);
+        let seen = |shown: &SceneLoop| Ok::<_, SceneLoopError>(shown.world.views.get(ViewId::MAIN)?.view.clone());
+        let second = seen(&shown)?;
+        assert_eq!(second.earlier.map(|earlier| earlier.eye), Some(first));
+        assert_eq!(second.jitter_px, TaaSettings::DEFAULT.jitter_px(1));
+        shown.settings.shadows = None;
+        assert!(shown.draw()?);
+        let third = seen(&shown)?;
+        assert!(second.shadows.is_some() && third.shadows.is_none() && shown.view().shadows.is_none());
+        assert_eq!(third.earlier.map(|earlier| earlier.eye), Some(second.eye));
+        assert!(shown.draw()?);
+        assert_eq!((seen(&shown)?.jitter_px, shown.world.frame_index.0), (TaaSettings::DEFAULT.jitter_px(3), 4));
         Ok(())
     }
 }

@@ -41,9 +41,11 @@ fn screen_occlusion(position: vec4<f32>, depth_slope: vec2<f32>) -> vec4<f32> {
         dot(vec3<f32>(m[0].w, m[1].w, m[2].w), back),
         m[3].w,
     );
-    // Meters per depth, divided by the threshold: the slope of `view_z`.
+    // Meters per depth, divided by the threshold: the slope of `view_z`. If the far plane is
+    // infinite, the square of a tiny depth is 0.
     let ahead = position.z * row.z - row.x;
-    let spread = (row.x * row.w - row.y * row.z) / (ahead * ahead * UPSAMPLED_THRESHOLD_M);
+    let meters = (row.x * row.w - row.y * row.z) / max(ahead * ahead, 1e-30);
+    let spread = meters / UPSAMPLED_THRESHOLD_M;
     let size = vec2<f32>(textureDimensions(ambient_occlusion));
     let pixels = frame.viewport_size_px / size;
     let at = position.xy / pixels - 0.5;
@@ -56,8 +58,10 @@ fn screen_occlusion(position: vec4<f32>, depth_slope: vec2<f32>) -> vec4<f32> {
         let texel = clamp(corner + step, vec2<f32>(0.0), size - 1.0);
         let depth = textureLoad(structure, vec2<i32>(texel), 0).r;
         let expected = position.z + dot(depth_slope, (texel + 0.5) * pixels - position.xy);
-        // The background has depth 0, and is far from every surface.
-        let near = bilateral_weight((depth - expected) * spread, 1.0);
+        // The background has depth 0, and is no part of a surface.
+        let is_surface = depth > 0.0 && expected > 0.0;
+        let nearness = bilateral_weight((depth - expected) * spread, 1.0);
+        let near = select(0.0, nearness, is_surface);
         let bilinear = mix(1.0 - share, share, step);
         let weight = bilinear.x * bilinear.y * max(near, 1e-4);
         let found = textureLoad(ambient_occlusion, vec2<i32>(texel), 0);

@@ -1,6 +1,6 @@
 // Depth pyramid of visible surfaces, and the positions of its texels.
 
-import package::lib::depth_normal::continues_ahead;
+import package::lib::depth_normal::continues_ahead_inside;
 import package::lib::depth_pyramid::finest_texel;
 import package::lib::unproject::{Projection, view_position};
 
@@ -56,12 +56,8 @@ fn structure_tangent(
 ) -> vec3<f32> {
     let back = vec2<f32>(structure_depth(texel - 2 * axis), structure_depth(texel - axis));
     let ahead = vec2<f32>(structure_depth(texel + axis), structure_depth(texel + 2 * axis));
-    // The repeated edge texel does not continue the surface.
     let last = vec2<i32>(textureDimensions(structure)) - 1;
-    let at_start = any(texel - axis < vec2<i32>(0));
-    let at_end = any(texel + axis > last);
-    let go_ahead = at_start || (!at_end && continues_ahead(back, depth, ahead));
-    if go_ahead {
+    if continues_ahead_inside(texel, axis, last, back, depth, ahead) {
         return structure_position(texel + axis, max(ahead.x, 1e-30), projection) - position;
     }
     return position - structure_position(texel - axis, max(back.y, 1e-30), projection);

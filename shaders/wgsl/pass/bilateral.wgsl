@@ -7,7 +7,7 @@
 
 import package::interface::structure::{structure, structure_depth};
 import package::lib::bilateral::bilateral_weight;
-import package::lib::depth_normal::continues_ahead;
+import package::lib::depth_normal::continues_ahead_inside;
 import package::lib::fullscreen::fullscreen_position;
 
 /// Settings. Mirrored by `layout::BilateralUniforms`.
@@ -37,11 +37,12 @@ fn vs_main(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
 }
 
 /// Returns the slope of stored depth along the axis, on the surface of the center texel.
-fn slope(texel: vec2<i32>, here: f32) -> f32 {
+fn slope(texel: vec2<i32>, here: f32, last: vec2<i32>) -> f32 {
     let axis = bilateral.axis;
     let back = vec2<f32>(structure_depth(texel - 2 * axis), structure_depth(texel - axis));
     let ahead = vec2<f32>(structure_depth(texel + axis), structure_depth(texel + 2 * axis));
-    return select(here - back.y, ahead.x - here, continues_ahead(back, here, ahead));
+    let go_ahead = continues_ahead_inside(texel, axis, last, back, here, ahead);
+    return select(here - back.y, ahead.x - here, go_ahead);
 }
 
 /// Returns a texel of the input.
@@ -62,7 +63,7 @@ fn fs_main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         return middle;
     }
     let last = vec2<i32>(textureDimensions(occlusion_in)) - 1;
-    let step = slope(texel, here);
+    let step = slope(texel, here, last);
     // The distance of two depths a and b, by `view_z`, is
     // (a - b) · spread / ((a · z - x) · (b · z - x)).
     let row = bilateral.depth;

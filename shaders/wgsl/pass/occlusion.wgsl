@@ -276,8 +276,13 @@ fn horizon_obscurance(texel: vec2<i32>, origin: vec3<f32>, normal: vec3<f32>) ->
                 }
             }
         }
-        let high = horizon_angle(above, 0.5 * PI + s.n);
-        let low = -horizon_angle(below, 0.5 * PI - s.n);
+        // Sectors need no horizons.
+        var high = 0.0;
+        var low = 0.0;
+        if !BITMASK || BENT_NORMALS {
+            high = horizon_angle(above, 0.5 * PI + s.n);
+            low = -horizon_angle(below, 0.5 * PI - s.n);
+        }
         whole += weight * slice_whole(s.n);
         if BITMASK {
             light += weight * slice_whole(s.n) * f32(32u - countOneBits(closed)) / 32.0;

@@ -1,7 +1,7 @@
 // Depth pyramid of visible surfaces, for screen-space effects. Level 0 is the depth of the prepass,
 // at its size or at half of it; each further level keeps one texel of four.
 
-import package::lib::depth_normal::continues_ahead;
+import package::lib::depth_normal::continues_ahead_inside;
 import package::lib::depth_pyramid::finer_texel;
 import package::lib::fullscreen::fullscreen_position;
 
@@ -33,24 +33,20 @@ fn finer_depth(texel: vec2<i32>) -> f32 {
     return textureLoad(finer, clamp(texel, vec2<i32>(0), last), 0).r;
 }
 
-/// Returns the change of depth per texel on the side that continues the surface at `here`. Returns
-/// 0 if the texels of that side are not on a line, as they belong to other surfaces. Arguments as
-/// for `continues_ahead`.
-fn slope_at(back: vec2<f32>, here: f32, ahead: vec2<f32>) -> f32 {
+/// Returns the change of depth per texel along `axis`, on the side that continues the surface of a
+/// texel of the prepass. Returns 0 if the texels of that side are not on a line, as they belong to
+/// other surfaces.
+fn finer_slope(texel: vec2<i32>, axis: vec2<i32>, here: f32) -> f32 {
+    let back = vec2<f32>(finer_depth(texel - 2 * axis), finer_depth(texel - axis));
+    let ahead = vec2<f32>(finer_depth(texel + axis), finer_depth(texel + 2 * axis));
+    let last = vec2<i32>(textureDimensions(finer)) - 1;
     var near = here - back.y;
     var next = back.y - back.x;
-    if continues_ahead(back, here, ahead) {
+    if continues_ahead_inside(texel, axis, last, back, here, ahead) {
         near = ahead.x - here;
         next = ahead.y - ahead.x;
     }
     return select(0.0, near, abs(next - near) <= 0.25 * abs(near));
-}
-
-/// Returns the slope of depth along `axis` at a texel of the prepass.
-fn finer_slope(texel: vec2<i32>, axis: vec2<i32>, here: f32) -> f32 {
-    let back = vec2<f32>(finer_depth(texel - 2 * axis), finer_depth(texel - axis));
-    let ahead = vec2<f32>(finer_depth(texel + axis), finer_depth(texel + 2 * axis));
-    return slope_at(back, here, ahead);
 }
 
 /// Returns the depth at the center of a texel of half the size: that of one texel of the prepass,

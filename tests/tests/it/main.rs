@@ -56,6 +56,7 @@ mod reference;
 mod reflections;
 mod replay;
 mod samplers;
+mod scene_loop;
 mod shadow_atlas;
 mod shadow_rays;
 mod shadows;

@@ -98,6 +98,19 @@ pub(super) const CASES: &[Case] = &[
         EXACT,
     ),
     case(
+        ["depth_normal", "continues_ahead_inside"],
+        &[Count(4), Count(4), Count(2), Vector(5, 0.0, 1.0)],
+        "continues_ahead_inside(vec2<i32>(v2(0u)), vec2<i32>(i32(x[2]), 1 - i32(x[2])), vec2<i32>(3, 2), v2(3u), x[5], v2(6u))",
+        &["select(0.0, 1.0, r)"],
+        |x| {
+            let [column, row, along] = [x[0], x[1], x[2]].map(|c| c as i32);
+            let (axis, sides) = ([along, 1 - along], ([x[3], x[4]], [x[6], x[7]]));
+            let ahead = depth_normal::continues_ahead_inside([column, row], axis, [3, 2], sides.0, x[5], sides.1);
+            vec![f64::from(ahead)]
+        },
+        EXACT,
+    ),
+    case(
         ["sao", "sao_tap_distance"],
         &[Count(64), Linear(0.0, 1.0), Log(0.01, 0.4)],
         "sao_tap_distance(x[0], x[1], x[2])",

@@ -4,7 +4,7 @@ use super::Stage;
 use framegraph_passes::effects::depth::structure::{Resolution, structure_levels};
 use framegraph_passes::effects::occlusion::{ConeTrace, Gtao, Method, Occluders, OcclusionSettings};
 use framegraph_shader_mirrors::cone_trace::cone_slice;
-use framegraph_shader_mirrors::depth_normal::continues_ahead;
+use framegraph_shader_mirrors::depth_normal::continues_ahead_inside;
 use framegraph_shader_mirrors::depth_pyramid::{finer_texel, finest_texel, pyramid_level};
 use framegraph_shader_mirrors::dither::interleaved_gradient_noise;
 use framegraph_shader_mirrors::gtao::{
@@ -110,11 +110,9 @@ impl<'a> Mirror<'a> {
             if !self.settings.fine_normals {
                 return toward(1);
             }
-            let last = self.levels[0].0;
-            let at_start = at(-1).iter().any(|c| *c < 0);
-            let at_end = at(1).iter().zip(last).any(|(c, side)| *c >= side);
-            let goes_on = continues_ahead([stored(-2), stored(-1)], depth, [stored(1), stored(2)]);
-            if at_start || (!at_end && goes_on) { toward(1) } else { -toward(-1) }
+            let last = self.levels[0].0.map(|side| side - 1);
+            let (back, ahead) = ([stored(-2), stored(-1)], [stored(1), stored(2)]);
+            if continues_ahead_inside(texel, axis, last, back, depth, ahead) { toward(1) } else { -toward(-1) }
         };
         normalize_or(along([0, 1]).cross(along([1, 0])), DVec3::Z)
     }
