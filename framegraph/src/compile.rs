@@ -2,6 +2,7 @@
 
 mod attachment_set;
 mod barriers;
+mod bindings;
 mod cull;
 mod current_step;
 mod error;

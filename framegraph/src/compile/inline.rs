@@ -6,9 +6,9 @@
 //! multisampling, the epilogue runs for each sample before the resolve.
 
 use super::attachment_set::AttachmentSet;
+use super::bindings::fits_shader;
 use super::join::Candidate;
 use super::steps::{InlinedInto, ResourceRange, range_in_plan};
-use super::validate::fits_shader;
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
 use crate::graph::{PassFlags, Tables};

@@ -7,8 +7,6 @@ mod attachments;
 mod clears;
 mod device;
 
-pub(super) use device::fits_shader;
-
 use super::error::{CompileError, CompileErrors, CompileReason};
 use super::framebuffer::framebuffer_of_pass;
 use super::measure::Measures;

@@ -2,7 +2,8 @@
 
 use crate::access::{Access, AccessKind};
 use crate::caps::{Caps, FormatCaps};
-use crate::compile::error::{BindingClass, CompileError, CompileErrors, CompileReason};
+use crate::compile::bindings::{class, limits};
+use crate::compile::error::{CompileError, CompileErrors, CompileReason};
 use crate::compile::measure::Measured;
 use crate::format::Format;
 use crate::graph::{Declared, PassKind, Tables};
@@ -146,26 +147,6 @@ fn buffer_fault(graph: &Tables, caps: &Caps, access: &Access, size: u64) -> Opti
     }
 }
 
-/// Returns `true` if a shader stage can bind everything that is used.
-pub(in crate::compile) fn fits_shader<'a>(
-    graph: &Tables,
-    caps: &Caps,
-    uses: impl Iterator<Item = &'a Access> + Clone,
-) -> bool {
-    let count = |kind| uses.clone().filter(|a| class(graph, caps, a) == Some(kind)).count();
-    limits(caps).into_iter().all(|(kind, max)| count(kind) <= max as usize)
-}
-
-/// Returns the maximum number of bindings of each class in a shader stage.
-const fn limits(caps: &Caps) -> [(BindingClass, u32); 4] {
-    [
-        (BindingClass::SampledTextures, caps.max_sampled_textures),
-        (BindingClass::StorageTextures, caps.max_storage_textures),
-        (BindingClass::StorageBuffers, caps.max_storage_buffers),
-        (BindingClass::UniformBuffers, caps.max_uniform_buffers),
-    ]
-}
-
 /// Reports passes that use more resources than a shader stage can bind.
 fn bindings(graph: &Tables, caps: &Caps, own: &[Access], pass: PassId, errors: &mut CompileErrors) {
     for (kind, max) in limits(caps) {
@@ -177,19 +158,5 @@ fn bindings(graph: &Tables, caps: &Caps, own: &[Access], pass: PassId, errors: &
             let beyond = own.iter().filter(is).nth(max as usize).map_or(ResourceId::NONE, |a| a.resource);
             errors.push(|| CompileError::new(graph, reason, pass, beyond));
         }
-    }
-}
-
-/// Returns the class of an access among the bindings of a shader.
-fn class(graph: &Tables, caps: &Caps, access: &Access) -> Option<BindingClass> {
-    let texture = graph.resources[access.resource.index()].desc.texture().is_some();
-    match access.kind {
-        AccessKind::Sampled => Some(BindingClass::SampledTextures),
-        // Otherwise it is an input attachment.
-        AccessKind::SamePixel if !caps.same_pixel => Some(BindingClass::SampledTextures),
-        AccessKind::StorageRead | AccessKind::StorageWrite if texture => Some(BindingClass::StorageTextures),
-        AccessKind::StorageRead | AccessKind::StorageWrite => Some(BindingClass::StorageBuffers),
-        AccessKind::Uniform => Some(BindingClass::UniformBuffers),
-        _ => None,
     }
 }
