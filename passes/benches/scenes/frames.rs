@@ -7,7 +7,7 @@ use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::light::ibl::cache::Cache;
 use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::light::shading::LightSettings;
-use framegraph_passes::{CameraView, LightSearch, Lighting, PreparedScene, Settings, ViewId, World, standard};
+use framegraph_passes::{CameraView, Lighting, PreparedScene, Settings, ViewId, World, standard};
 use framegraph_scene::{Environment, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports};
 use glam::DVec3;
@@ -58,12 +58,8 @@ fn row(gpu: &Gpu, workload: &Workload) -> Result<(), Box<dyn Error>> {
     let seen = |frame| ViewSettings {
         camera: workload.camera(frame),
         size_px: SIZE_PX,
-        ev100: 14.5,
-        environment_intensity: 1.0,
         shadows: settings.shadows,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let background = Background::Constant(glam::Vec3::ONE);
     let view = |frame, lighting: &Lighting| {

@@ -8,7 +8,7 @@ use framegraph_passes::effects::depth::structure::{Resolution, StructureLevel, s
 use framegraph_passes::effects::occlusion::{AmbientOcclusion, Axis, OcclusionBlur, OcclusionSettings};
 use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;
-use framegraph_passes::{CameraView, LightSearch, Precision, ViewId, ViewSettings};
+use framegraph_passes::{CameraView, Precision, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
 use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture};
 use glam::{DVec2, DVec3, Vec3};
@@ -140,11 +140,8 @@ impl Stage {
             camera: self.camera.clone(),
             size_px: self.size_px,
             ev100: 0.0,
-            environment_intensity: 1.0,
             shadows: None,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
+            ..ViewSettings::default()
         };
         let mut view = CameraView::empty(&seen);
         if let Some(toward) = self.toward_sun {
