@@ -10,13 +10,13 @@ use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;
 use framegraph_passes::{CameraView, Precision, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
-use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture};
+use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture, texture_2d};
 use glam::{DVec2, DVec3, Vec3};
 use std::error::Error;
 use std::time::Instant;
 use truth::occlusion as truth;
 use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{CompareFunction, Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use wgpu::{CompareFunction, TextureFormat, TextureUsages};
 
 /// Copies an uploaded picture into a depth attachment.
 const GIVEN: Shader<'static> = Shader::new(
@@ -175,16 +175,7 @@ impl Stage {
 
     fn uploaded(&self, gpu: &Gpu) -> wgpu::Texture {
         let [width, height] = self.size_px;
-        let desc = TextureDescriptor {
-            label: Some("given"),
-            size: Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: TextureFormat::R32Float,
-            usage: TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        };
+        let desc = texture_2d("given", [width, height], TextureFormat::R32Float, TextureUsages::TEXTURE_BINDING);
         let depth = bytemuck::cast_slice(&self.depth);
         gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, depth)
     }

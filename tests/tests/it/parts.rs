@@ -17,12 +17,12 @@ use framegraph_passes::{CameraView, FrameIndex, PostSettings, ViewId, ViewSettin
 use framegraph_scene::{Camera, Projection};
 use framegraph_shader_mirrors::srgb::srgb_from_linear_channel;
 use framegraph_shaders::layout::{FxaaUniforms, ToneMap};
-use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture};
+use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture, texture_2d};
 use glam::DVec3;
 use std::error::Error;
 use tests::executors;
 use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use wgpu::{TextureFormat, TextureUsages};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -63,16 +63,7 @@ const SIZE: [u32; 2] = [16, 12];
 const TEXELS: usize = (SIZE[0] * SIZE[1]) as usize;
 
 fn uploaded(gpu: &Gpu, format: TextureFormat, bytes: &[u8]) -> wgpu::Texture {
-    let desc = TextureDescriptor {
-        label: Some("picture"),
-        size: Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format,
-        usage: TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
+    let desc = texture_2d("picture", [SIZE[0], SIZE[1]], format, TextureUsages::TEXTURE_BINDING);
     gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, bytes)
 }
 
