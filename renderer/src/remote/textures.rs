@@ -78,7 +78,10 @@ impl Textures {
         let bytes = 16 * u64::from(width) * u64::from(height);
         if bytes > MAX_TEXTURE_BYTES {
             let max = MAX_TEXTURE_BYTES >> 20;
-            return Err(format!("`{text}` has {} MiB; the limit is {max} MiB, select a smaller mip level", bytes >> 20));
+            return Err(format!(
+                "`{text}` has {} MiB; the limit is {max} MiB, select a smaller mip level",
+                bytes >> 20
+            ));
         }
         let inspector = self.inspector.get_or_insert_with(|| Inspector::new(executor.gpu()));
         inspector.start_target(executor, plan, frame, world, imports, target).map_err(|error| error.to_string())

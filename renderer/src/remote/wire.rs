@@ -125,3 +125,107 @@ pub(super) fn encode(message: &impl Serialize, max: u32) -> Result<Vec<u8>, Remo
 pub(super) fn write(to: &mut impl Write, message: &impl Serialize, max: u32) -> Result<(), RemoteError> {
     to.write_all(&encode(message, max)?).map_err(|error| broken(&error))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::message::{FromEngine, FromViewer, RemotePlan, TextureRequest};
+    use super::*;
+    use framegraph::{Aspect, Caps, Options};
+
+    /// SplitMix64 (Steele, Lea, Flood 2014).
+    fn random(state: &mut u64) -> u64 {
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = *state;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^ (x >> 31)
+    }
+
+    fn request() -> FromViewer {
+        FromViewer::Texture(TextureRequest {
+            number: 7,
+            text: "hdr@color:1".into(),
+            aspect: Aspect::All,
+            sample: Some(2),
+        })
+    }
+
+    fn plan() -> FromEngine {
+        let text = |text: &str| text.to_owned();
+        FromEngine::Plan(RemotePlan {
+            compilation: 3,
+            json: text("{}"),
+            graph: text("()"),
+            caps: Caps::wgpu(),
+            options: Options::default(),
+            declared_at: vec![text("src/main.rs:1:2")],
+        })
+    }
+
+    #[test]
+    fn messages_are_decoded_as_encoded() {
+        let bytes = encode(&plan(), MAX_ANSWER_BYTES).expect("it is short");
+        assert_eq!(read::<FromEngine>(&mut bytes.as_slice(), MAX_ANSWER_BYTES), Ok(plan()));
+        // Messages describe no fields. A change of this number requires another `VERSION`.
+        assert_eq!((VERSION, bytes.len()), (1, FORM_BYTES), "the form of a message changed: raise `VERSION`");
+        let bytes = encode(&request(), MAX_REQUEST_BYTES).expect("it is short");
+        assert_eq!(read::<FromViewer>(&mut bytes.as_slice(), MAX_REQUEST_BYTES), Ok(request()));
+    }
+
+    /// Size of the message of [`plan`].
+    const FORM_BYTES: usize = 3392;
+
+    #[test]
+    fn sizes_and_beginnings_are_checked() {
+        let too_long = RemoteError::TooLong { bytes: u32::MAX.into(), max: 4096 };
+        assert_eq!(read::<FromViewer>(&mut [0xff; 9].as_slice(), MAX_REQUEST_BYTES), Err(too_long));
+        let mut more = encode(&request(), MAX_REQUEST_BYTES).expect("it is short");
+        more[0] += 1;
+        more.push(0);
+        let unused = RemoteError::Malformed { reason: "1 unused bytes".into() };
+        assert_eq!(read::<FromViewer>(&mut more.as_slice(), MAX_REQUEST_BYTES), Err(unused));
+        let long = "x".repeat(MAX_REQUEST_BYTES as usize);
+        assert!(matches!(encode(&long, MAX_REQUEST_BYTES), Err(RemoteError::TooLong { .. })));
+        assert_eq!(expect_hello(&mut hello(VERSION).as_slice()), Ok(()));
+        assert_eq!(expect_hello(&mut hello(9).as_slice()), Err(RemoteError::Version { theirs: 9, ours: VERSION }));
+        assert_eq!(expect_hello(&mut b"GET / HTTP/1.1\r\n".as_slice()), Err(RemoteError::Foreign));
+        assert!(matches!(expect_hello(&mut MAGIC.as_slice()), Err(RemoteError::Closed { .. })));
+    }
+
+    #[test]
+    fn random_and_damaged_messages_give_errors() {
+        let mut state = 40;
+        let valid =
+            [encode(&request(), MAX_REQUEST_BYTES), encode(&plan(), MAX_ANSWER_BYTES)].map(|b| b.expect("short"));
+        let (mut decoded, mut refused) = (0, 0);
+        for case in 0..4000 {
+            let mut bytes = valid[case % 2].clone();
+            match case % 3 {
+                0 => {
+                    let body = (random(&mut state) % 64) as usize;
+                    bytes = (body as u32).to_le_bytes().to_vec();
+                    bytes.extend((0..body).map(|_| random(&mut state) as u8));
+                }
+                1 => bytes.truncate((random(&mut state) % bytes.len() as u64) as usize),
+                _ => {
+                    let at = (random(&mut state) % bytes.len() as u64) as usize;
+                    bytes[at] ^= 1 << (random(&mut state) % 8);
+                }
+            }
+            let results = [
+                read::<FromViewer>(&mut bytes.as_slice(), MAX_REQUEST_BYTES).map(drop),
+                read::<FromEngine>(&mut bytes.as_slice(), MAX_ANSWER_BYTES).map(drop),
+            ];
+            for result in results {
+                match result {
+                    Ok(()) => decoded += 1,
+                    Err(error) => {
+                        refused += 1;
+                        assert!(!error.to_string().is_empty() && !error.to_string().contains('\n'));
+                    }
+                }
+            }
+        }
+        assert!(refused > 4000 && decoded > 0, "{refused} refused, {decoded} decoded");
+    }
+}
