@@ -80,6 +80,7 @@ const ROWS: &[Row] = &[
     row("`scene`", "framegraph-scene", &[], Some("scene"), ["142", "81", "-", "-", "458"]),
     row("`shaders`", "framegraph-shaders", &[], Some("shaders"), ["62", "-", "5399", "3494", "192"]),
     row("`passes`", "framegraph-passes", &[], Some("passes"), ["143", "82", "2149", "-", "461"]),
+    row("`egui`: panels for egui", "framegraph-egui", &[], Some("egui"), ["-", "-", "-", "-", "-"]),
     row("the program `render`", "examples", &[], None, ["169", "108", "-", "-", "523"]),
 ];
 

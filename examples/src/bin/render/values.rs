@@ -1,8 +1,8 @@
 //! Parsing of single option values.
 
 use framegraph::Alias;
+use framegraph_check::budget::bytes;
 use framegraph_scene::CameraChoice;
-use program::bytes;
 use program::cli::Item;
 use std::str::FromStr;
 
