@@ -244,8 +244,8 @@ impl Renderables {
         firsts.zip(self.bounds.chunks(BLOCK).zip(&self.blocks)).map(|(first, (row, around))| (first, row, around))
     }
 
-    /// Returns the boxes of the instances that intersect all half spaces ([`BoxArrays::reaching`] with the eye at zero),
-    /// or the bounding box of all of them if they are more than `max_boxes`.
+    /// Returns the boxes of the instances that intersect all half spaces ([`BoxArrays::reaching`], with the eye at
+    /// zero). More than `max_boxes` are replaced by their common bounding box.
     #[must_use]
     pub fn boxes_reaching(&self, planes: &[DVec4], max_boxes: usize) -> Vec<Aabb> {
         let (mut whole, mut others) = (Vec::new(), Vec::new());
