@@ -31,7 +31,8 @@ pub(crate) fn validate(
         let reason = CompileReason::TooManyPasses;
         return errors.push(|| CompileError::new(graph, reason, PassId::NONE, ResourceId::NONE));
     }
-    if let (Some((import, _)), true) = (graph.aliases.first(), caps.explicit_barriers) {
+    let mut textures = graph.aliases.iter().filter(|(a, _)| graph.resources[a.index()].desc.texture().is_some());
+    if let (Some((import, _)), true) = (textures.next(), caps.explicit_barriers) {
         errors.push(|| CompileError::new(graph, CompileReason::Aliased, PassId::NONE, *import));
     }
     if graph.contents_uncertain {

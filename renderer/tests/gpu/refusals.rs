@@ -370,3 +370,40 @@ fn a_texture_behind_two_imports_is_refused_unless_they_may_alias() -> TestResult
     }
     Ok(())
 }
+
+/// One buffer behind two imports is refused like a texture.
+#[test]
+fn a_buffer_behind_two_imports_is_refused_unless_they_may_alias() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    let shared = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("shared"),
+        size: 64,
+        usage,
+        mapped_at_creation: false,
+    });
+    for aliases in [false, true] {
+        let mut bench = Bench::new(&gpu, 8, 8);
+        let (read, other) = bench.declare(|frame| {
+            let graph = frame.graph_mut();
+            let [read, other] = ["read", "other"].map(|n| graph.import_buffer(n, 64, Entry::Defined, Exit::Keep));
+            if aliases {
+                graph.may_alias_buffer(read, other)?;
+            }
+            let declared = |p: &mut framegraph::PassBuilder<'_>| {
+                p.side_effect();
+                p.kind(framegraph::PassKind::Compute)?;
+                p.uniform(read).map(drop)
+            };
+            frame.add_fn("look", declared, |_, (), _| Ok(()))?;
+            frame.add_fn("copy", |p| p.copy_target_buffer(other, Intent::Overwrite), |_, _, _| Ok(()))?;
+            Ok((read, other))
+        })?;
+        bench.imports.buffer(read, &shared).buffer(other, &shared);
+        let done = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports).map(drop);
+        let told = done.map_err(|error| error.to_string()).err().unwrap_or_default();
+        let named = "the imports `read` and `other` are bound to one buffer; declare `Graph::may_alias_buffer`";
+        assert!(if aliases { told.is_empty() } else { told.contains(named) }, "{told}");
+    }
+    Ok(())
+}

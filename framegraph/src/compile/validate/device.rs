@@ -103,7 +103,7 @@ pub(super) fn accesses(graph: &Tables, caps: &Caps, measures: &[Measured], pass:
             errors.push(|| CompileError::new(graph, reason, pass, access.resource));
         }
     }
-    bindings(graph, caps, own, pass, errors);
+    bindings(graph, caps, row.kind, own, pass, errors);
 }
 
 fn texture_fault(caps: &Caps, access: &Access, format: Format, samples: u8) -> Option<CompileReason> {
@@ -147,16 +147,20 @@ fn buffer_fault(graph: &Tables, caps: &Caps, access: &Access, size: u64) -> Opti
     }
 }
 
-/// Reports passes that use more resources than a shader stage can bind.
-fn bindings(graph: &Tables, caps: &Caps, own: &[Access], pass: PassId, errors: &mut CompileErrors) {
+/// Reports passes that use more resources than their shader stages can bind. Raster passes have two stages. Only
+/// fragment shaders can write storage on every device that has raster storage.
+fn bindings(graph: &Tables, caps: &Caps, stages: PassKind, own: &[Access], pass: PassId, errors: &mut CompileErrors) {
+    let stages = if stages == PassKind::Raster { 2 } else { 1 };
     for (kind, max) in limits(caps) {
-        let is = |a: &&Access| class(graph, caps, a) == Some(kind);
-        let count = own.iter().filter(is).count() as u32;
-        if count > max {
-            let reason = CompileReason::Bindings { kind, count, max };
-            // The first resource beyond the limit.
-            let beyond = own.iter().filter(is).nth(max as usize).map_or(ResourceId::NONE, |a| a.resource);
-            errors.push(|| CompileError::new(graph, reason, pass, beyond));
-        }
+        let is = |a: &Access, written: bool| class(graph, caps, a) == Some(kind) && (!written || a.mode.writes());
+        let exceeded = [(false, max.saturating_mul(stages)), (true, max)].into_iter().find_map(|(written, max)| {
+            let count = own.iter().filter(|a| is(a, written)).count() as u32;
+            (count > max).then_some((written, count, max))
+        });
+        let Some((written, count, max)) = exceeded else { continue };
+        let reason = CompileReason::Bindings { kind, count, max, written };
+        // The first resource beyond the limit.
+        let beyond = own.iter().filter(|a| is(a, written)).nth(max as usize).map_or(ResourceId::NONE, |a| a.resource);
+        errors.push(|| CompileError::new(graph, reason, pass, beyond));
     }
 }
