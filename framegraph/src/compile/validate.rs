@@ -7,6 +7,8 @@ mod attachments;
 mod clears;
 mod device;
 
+pub(crate) use device::Allowed;
+
 use super::error::{CompileError, CompileErrors, CompileReason};
 use super::framebuffer::framebuffer_of_pass;
 use super::measure::Measures;
@@ -17,7 +19,8 @@ use crate::format::Format;
 use crate::graph::{PassFlags, PassKind, Tables};
 use crate::id::{PassId, ResourceId};
 
-/// Appends every error of `graph` to `errors`; `defined` is scratch memory with one flag per part.
+/// Appends every error of `graph` to `errors`; `defined` is scratch memory with one flag per part, and `allowed` holds the
+/// checks of the last device.
 #[inline(never)]
 pub(crate) fn validate(
     graph: &Tables,
@@ -25,6 +28,7 @@ pub(crate) fn validate(
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
+    allowed: &mut Allowed,
     errors: &mut CompileErrors,
 ) {
     if graph.passes.len() >= PassId::NONE.index() {
@@ -39,7 +43,7 @@ pub(crate) fn validate(
         contents(graph, parts, measures, defined, errors);
     }
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MAX_TILE_BYTES;
-    let allowed = device::Allowed::on(caps);
+    allowed.prepare(caps);
     for (index, pass) in graph.passes.iter().enumerate() {
         if !allowed.clearly(graph, &measures.rows, pass) {
             device::accesses(graph, caps, &measures.rows, PassId::at(index), errors);

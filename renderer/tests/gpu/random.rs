@@ -66,7 +66,7 @@ fn binding_type(plan: &Plan, access: &Access) -> Option<BindingType> {
 const fn class(ty: BindingType) -> usize {
     match ty {
         BindingType::StorageTexture { .. } => 1,
-        BindingType::Buffer { ty: wgpu::BufferBindingType::Storage { .. }, .. } => 2,
+        BindingType::Buffer { ty: BufferBindingType::Storage { .. }, .. } => 2,
         BindingType::Buffer { .. } => 3,
         _ => 0,
     }

@@ -1,7 +1,7 @@
 //! Validation of accesses against the device: formats, bindings and buffer ranges.
 
 use crate::access::{Access, AccessKind};
-use crate::caps::{Caps, FormatCaps};
+use crate::caps::{Caps, FormatCaps, FormatTable};
 use crate::compile::bindings::{class, limits};
 use crate::compile::error::{CompileError, CompileErrors, CompileReason};
 use crate::compile::measure::Measured;
@@ -9,8 +9,11 @@ use crate::format::Format;
 use crate::graph::{Declared, PassKind, Tables};
 use crate::id::{PassId, ResourceId};
 
-/// Limits of a device, prepared for one look per access.
-pub(super) struct Allowed {
+/// Limits of a device, prepared for one look per access. Kept between compilations.
+#[derive(Debug)]
+pub(crate) struct Allowed {
+    /// The formats that `kinds` was made from.
+    formats: Option<FormatTable>,
     /// By format; the last entry is for buffers. Kinds of access that need no further check, one bit each.
     kinds: [u16; 256],
     /// Number of accesses of a pass below which no limit of bindings can be exceeded.
@@ -25,15 +28,23 @@ const FREE: u16 = {
     1 << CopySource as u16 | 1 << CopyTarget as u16
 };
 
+impl Default for Allowed {
+    fn default() -> Self {
+        Self { formats: None, kinds: [FREE; 256], few: 0, raster_storage: false }
+    }
+}
+
 impl Allowed {
     /// Prepares the checks of a device.
-    pub(super) fn on(caps: &Caps) -> Self {
-        let mut kinds = [FREE; 256];
-        for format in Format::ALL {
-            kinds[format as usize] = allowed(caps.formats.get(format));
+    pub(super) fn prepare(&mut self, caps: &Caps) {
+        if self.formats.as_ref() != Some(&caps.formats) {
+            for format in Format::ALL {
+                self.kinds[format as usize] = allowed(caps.formats.get(format));
+            }
+            self.formats = Some(caps.formats);
         }
-        let few = limits(caps).into_iter().map(|(_, max)| max).min().unwrap_or(0);
-        Self { kinds, few, raster_storage: caps.raster_storage }
+        self.few = limits(caps).into_iter().map(|(_, max)| max).min().unwrap_or(0);
+        self.raster_storage = caps.raster_storage;
     }
 
     /// Returns `true` if the device supports every access of a pass, as far as a look at each decides.
