@@ -21,14 +21,6 @@ pub fn size(item: &Item) -> Result<[u32; 2], String> {
     }
 }
 
-/// Parses the number of samples per pixel.
-///
-/// # Errors
-/// One line that names the option.
-pub fn samples(item: &Item) -> Result<u8, String> {
-    item.parse("1 or 4", |text| text.parse().ok().filter(|samples| matches!(samples, 1 | 4)))
-}
-
 /// Parses the mode of memory aliasing.
 ///
 /// # Errors
