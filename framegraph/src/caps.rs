@@ -87,7 +87,7 @@ pub struct Caps {
     /// Attachments with several layers can be memoryless too.
     pub memoryless_layers: bool,
     /// Memoryless attachments really save memory. `false` on devices without tiles that accept the flag and allocate
-    /// anyway.
+    /// anyway; attachments are then placed in the heap with [`Alias::Heap`](crate::Alias::Heap).
     pub memoryless_saves: bool,
     /// Consecutive raster passes with the same attachments can be merged into one step.
     pub merge_attachments: bool,
