@@ -63,7 +63,7 @@ mod vertex;
 pub use bloom::{BloomMixUniforms, BloomUniforms, FlareUniforms};
 pub use dof::DofUniforms;
 pub use fog::FogUniforms;
-pub use frame::FrameUniforms;
+pub use frame::{EyeUniforms, FrameUniforms};
 pub use froxel::FroxelUniforms;
 pub use grading::GradingUniforms;
 pub use grading_settings::Grading;
