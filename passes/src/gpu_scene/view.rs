@@ -10,6 +10,7 @@ mod blended;
 mod gpu;
 mod levels;
 mod motion;
+mod stereo;
 
 pub use gpu::{GpuView, ViewId, Views};
 
@@ -28,7 +29,7 @@ use crate::light::sun::{angular_radius_rad, halo_of, illuminance_lux, sun_of};
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::environment::{Sky, sun_light};
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene, SunHalo};
-use framegraph_shaders::layout::{FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
+use framegraph_shaders::layout::{EyeUniforms, FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
 
@@ -166,6 +167,8 @@ pub struct CameraView {
     pub still_frames: u32,
     /// View of the previous frame ([`CameraView::after`]); `None` if it equals this one.
     pub earlier: Option<PreviousView>,
+    /// Left and right eye of a stereo view ([`CameraView::stereo`]); `None` for other views.
+    pub eyes: Option<[EyeUniforms; 2]>,
 }
 
 impl CameraView {
@@ -390,6 +393,7 @@ impl CameraView {
             jitter_px: DVec2::ZERO,
             still_frames: 0,
             earlier: None,
+            eyes: None,
         }
     }
 }

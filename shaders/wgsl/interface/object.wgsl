@@ -3,6 +3,8 @@
 // object. Mesa's software driver reads buffers per vertex, but this stream once.
 
 import package::interface::frame::frame;
+@if(STEREO)
+import package::interface::frame::eyes;
 import package::lib::numerics::normalize_or;
 
 /// Transform of an object. Mirrored by `layout::ObjectUniforms`.
@@ -32,6 +34,9 @@ struct ObjectUniforms {
 @if(INSTANCE_STREAM)
 struct Instance {
     @location(6) number: u32,
+    /// Eye that is drawn.
+    @if(STEREO)
+    @builtin(view_index) eye: u32,
     /// Columns of the model-to-world matrix, in m.
     @location(8) column_x: vec4<f32>,
     @location(9) column_y: vec4<f32>,
@@ -47,6 +52,9 @@ struct Instance {
 @else
 struct Instance {
     @location(6) number: u32,
+    /// Eye that is drawn.
+    @if(STEREO)
+    @builtin(view_index) eye: u32,
 }
 
 /// Returns the model-to-world matrix, in m.
@@ -111,7 +119,13 @@ fn world_position(position: vec3<f32>, instance: Instance) -> vec3<f32> {
 
 /// Returns the clip position of a world position. Depth prepass and color pass must agree to the
 /// bit, because the depth test is Equal. Both use this function and mark their output @invariant.
-fn clip_position(world: vec3<f32>) -> vec4<f32> {
+@if(STEREO)
+fn clip_position(world: vec3<f32>, instance: Instance) -> vec4<f32> {
+    return eyes[instance.eye].clip_from_world * vec4<f32>(world, 1.0);
+}
+
+@else
+fn clip_position(world: vec3<f32>, instance: Instance) -> vec4<f32> {
     return frame.clip_from_world * vec4<f32>(world, 1.0);
 }
 
