@@ -11,6 +11,8 @@
 
 pub mod accuracy_data;
 pub mod app;
+#[cfg(feature = "window")]
+pub mod attached;
 pub mod drawing;
 pub mod editor;
 mod file_bytes;
