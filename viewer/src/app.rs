@@ -1,28 +1,26 @@
 //! The application: panes in tiles that show one [`Session`].
 
+mod accuracy;
 #[cfg(feature = "window")]
 mod attaching;
 #[cfg(feature = "window")]
 mod chosen;
 #[cfg(feature = "window")]
 pub mod dialog;
-mod drawings;
 #[cfg(feature = "window")]
 mod export;
 mod panes;
 mod shortcuts;
-mod strip;
 
 pub use crate::session::{Role, Session};
 pub use panes::Pane;
 pub use shortcuts::SHORTCUTS;
 
 use crate::drawing::Item;
-use crate::panel::{self, Canvas, List};
+use crate::panel::{self, List, Views};
 use crate::view::{self, View};
 use egui::{Context, Panel, RichText, Ui};
 use egui_tiles::Tree;
-use std::collections::BTreeMap;
 
 /// The application without its window, which an engine can embed in its own egui UI.
 pub struct Viewer {
@@ -32,16 +30,12 @@ pub struct Viewer {
     tiles: Tree<Pane>,
     /// Search pane.
     list: List,
-    /// Pan and zoom of each view.
-    canvases: BTreeMap<View, Canvas>,
-    /// Tables of the timeline and of memory.
-    grids: panes::Grids,
-    /// Cached drawings of the views.
-    drawings: drawings::Drawings,
+    /// Views of plans.
+    views: Views,
     /// Document to which zoom and search belong.
     document: u64,
-    /// Comparison picture of an accuracy choice.
-    strip: strip::Strip,
+    /// Accuracy view.
+    accuracy: accuracy::AccuracyPane,
     /// Live frame.
     #[cfg(feature = "window")]
     pub live: Option<crate::live::Live>,
@@ -74,11 +68,9 @@ impl Viewer {
             session,
             tiles: panes::arranged(false),
             list: List::default(),
-            canvases: BTreeMap::new(),
-            grids: panes::Grids::default(),
-            drawings: drawings::Drawings::default(),
+            views: Views::default(),
             document: 0,
-            strip: strip::Strip::default(),
+            accuracy: accuracy::AccuracyPane::default(),
             #[cfg(feature = "window")]
             live: None,
             #[cfg(feature = "window")]
@@ -134,14 +126,12 @@ impl Viewer {
         if !self.session.messages.is_empty() || self.session.notice.is_some() {
             Panel::top("messages").show(ui, |ui| self.messages(ui));
         }
-        let Self { session, tiles, list, canvases, grids, drawings, strip, .. } = self;
+        let Self { session, tiles, list, views, accuracy, .. } = self;
         let mut behavior = panes::Panes {
             session,
             list,
-            canvases,
-            grids,
-            drawings,
-            strip,
+            views,
+            accuracy,
             #[cfg(feature = "window")]
             live: &mut self.live,
             #[cfg(feature = "window")]
@@ -176,10 +166,7 @@ impl Viewer {
 
     /// Returns the screen position of an item in a view; `None` if it is not visible.
     pub fn place_of(&self, view: View, item: Item) -> Option<egui::Pos2> {
-        if let Some(grid) = self.grids.of(view) {
-            return grid.place_of(item);
-        }
-        self.canvases.get(&view)?.place_of(self.drawings.existing(view)?, item)
+        self.views.place_of(view, item)
     }
 
     /// Returns the arrangement of the panes as text for [`Viewer::arrange`].
@@ -201,14 +188,13 @@ impl Viewer {
         }
     }
 
-    /// Drops outdated drawings, and after another file was opened, zoom and search.
+    /// Resets zoom and search after another file was opened.
     fn refresh(&mut self) {
         if std::mem::replace(&mut self.document, self.session.documents()) != self.session.documents() {
-            self.canvases.clear();
-            self.grids = panes::Grids::default();
+            self.views.reset();
+            self.accuracy.reset();
             self.list.search.clear();
         }
-        self.drawings.refresh(&self.session);
     }
 
     /// Executes the action of a shortcut.
@@ -218,7 +204,7 @@ impl Viewer {
                 self.turn_to(Pane::List);
                 self.list.focus = true;
             }
-            shortcuts::Action::View(view) => self.turn_to(Pane::View(view)),
+            shortcuts::Action::Pane(pane) => self.turn_to(pane),
             shortcuts::Action::Help => self.help = !self.help,
             #[cfg(feature = "window")]
             shortcuts::Action::Undo | shortcuts::Action::Redo => {

@@ -268,8 +268,8 @@ fn follow(address: &str, news: &SyncSender<News>, wake: &dyn Fn()) -> String {
     }
 }
 
-/// Compiles the plan of an engine from its declared graph. Where the results differ, as with measured sizes of placed
-/// textures, the plan of the engine is shown.
+/// Compiles the plan of an engine from its declared graph. The plan of the engine is shown if they differ, as with
+/// measured sizes of placed textures.
 fn running(engine: &str, message: RemotePlan) -> Result<Running, String> {
     let RemotePlan { compilation, json, graph, caps, options, declared_at } = message;
     let Options { frame, order, alias, cull, merge, inline, memoryless, .. } = options;

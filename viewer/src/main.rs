@@ -38,7 +38,10 @@ fn main() -> ExitCode {
     };
     program::interrupt::exit_when_asked();
     let done = match &args.out {
-        _ if args.measure => viewer::measuring::table().map(program::print).map_err(Failure::Device),
+        _ if args.measure => {
+            let scene = args.file.as_ref().map_or("spheres".into(), |file| file.to_string_lossy());
+            viewer::measuring::table(&scene).map(program::print).map_err(Failure::Device)
+        }
         Some(out) => headless::run(&args, out),
         None => window::run(&args),
     };

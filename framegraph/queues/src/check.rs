@@ -109,6 +109,9 @@ pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
             }));
         }
     }
+    // Also of planes that are attached without an access.
+    let late = plan.barriers().iter().filter(|row| !row.after.is_none() && !ordered(row.after, row.before));
+    found.extend(late.map(|row| Violation::Unordered { first: row.after, second: row.before, resource: row.resource }));
     found.extend(not_owned(plan, schedule));
     for queue in layout.ids().skip(1) {
         let last = lanes.iter().rposition(|lane| *lane == queue).map(StepId::at);

@@ -113,6 +113,13 @@ const ROWS: &[Row] = &[
         before: ["143", "82", "2149", "-", "461"],
     },
     Row {
+        name: "`egui`: panels for egui",
+        package: "framegraph-egui",
+        features: &[],
+        folder: Some("egui"),
+        before: ["-", "-", "-", "-", "-"],
+    },
+    Row {
         name: "the program `render`",
         package: "examples",
         features: &[],

@@ -2,7 +2,7 @@
 
 mod minimap;
 mod rows;
-#[cfg(all(test, feature = "window"))]
+#[cfg(test)]
 mod tests;
 mod view;
 

@@ -1,7 +1,7 @@
 //! Terms of the glossary (`docs/reference/glossary.md`) for tooltips.
 
 /// Text of the document at build time.
-const TEXT: &str = include_str!("../../docs/reference/glossary.md");
+const TEXT: &str = include_str!("glossary.md");
 
 /// Returns the definition of a term as plain text: the second column of the row with the term in bold.
 pub fn meaning(word: &str) -> Option<String> {

@@ -4,18 +4,20 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Editors that run in a terminal, which the viewer does not have.
+/// Editors that run in a terminal, which the application does not have.
 const IN_TERMINALS: [&str; 10] = ["vi", "vim", "nvim", "nano", "pico", "ed", "hx", "helix", "micro", "kak"];
 /// Editor that is used if `VISUAL` and `EDITOR` name none with a window.
 const DEFAULT: &str = "code";
 
 /// Opens `PATH:LINE` or `PATH:LINE:COLUMN` in the editor of `VISUAL` or `EDITOR`, or in Visual Studio Code.
 ///
+/// A relative path is relative to the current folder, or else to `sources`: the folder in which the engine was built.
+///
 /// # Errors
 /// One line: the file does not exist, or no editor with a window was found.
-pub fn open(place: &str) -> Result<(), String> {
+pub fn open(place: &str, sources: &Path) -> Result<(), String> {
     let (path, line) = parsed(place);
-    let path = existing(path).ok_or_else(|| format!("{path}: the source file does not exist here"))?;
+    let path = existing(path, sources).ok_or_else(|| format!("{path}: the source file does not exist here"))?;
     let named = ["VISUAL", "EDITOR"].into_iter().filter_map(|name| std::env::var(name).ok());
     let [program, arguments @ ..] = &command(named, &path, line)[..] else { return Ok(()) };
     let started =
@@ -41,10 +43,9 @@ fn parsed(place: &str) -> (&str, u32) {
     (path, line)
 }
 
-/// Returns the path of a source file: relative to the current folder, or to the folder in which the viewer was built.
-fn existing(path: &str) -> Option<PathBuf> {
-    let built = Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(|folder| folder.join(path));
-    [Some(PathBuf::from(path)), built].into_iter().flatten().find(|path| path.is_file())
+/// Returns the path of a source file, relative to the current folder or to `sources`.
+fn existing(path: &str, sources: &Path) -> Option<PathBuf> {
+    [PathBuf::from(path), sources.join(path)].into_iter().find(|path| path.is_file())
 }
 
 /// Returns the program and its arguments.
@@ -86,7 +87,7 @@ mod tests {
         assert_eq!(parsed("src/a.rs:3:9"), ("src/a.rs", 3));
         assert_eq!(parsed("frame.ron:7"), ("frame.ron", 7));
         assert_eq!(parsed("frame"), ("frame", 1));
-        assert!(open("none.rs:3").is_err_and(|error| error.starts_with("none.rs: the source file")));
-        assert!(existing("viewer/src/editor.rs").is_some());
+        assert!(open("none.rs:3", Path::new(".")).is_err_and(|error| error.starts_with("none.rs: the source file")));
+        assert!(existing("egui/src/editor.rs", Path::new("..")).is_some());
     }
 }

@@ -1,9 +1,9 @@
 //! Drawings of the views, created when a view is first shown; those of large plans on a separate thread.
 
+use super::view_data::ViewData;
 use crate::drawing::{Drawing, Ink};
 use crate::job::Job;
 use crate::plan_data::PlanData;
-use crate::session::Session;
 use crate::view::{self, View, ViewContext};
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -20,14 +20,14 @@ const PATIENCE: Duration = Duration::from_millis(10);
 pub(super) struct Drawings {
     made: BTreeMap<View, Drawing>,
     jobs: BTreeMap<View, Job<Drawing>>,
-    /// Generation and times of the drawn session.
+    /// Generation and times of the drawn data.
     of: [u64; 2],
 }
 
 impl Drawings {
     /// Drops outdated drawings.
-    pub fn refresh(&mut self, session: &Session) {
-        let now = [session.generation(), session.times()];
+    pub fn refresh(&mut self, data: ViewData<'_>) {
+        let now = [data.generation, data.times];
         // If only times changed, views without times keep their drawings.
         let only_times = self.of[0] == now[0];
         let kept = |view: &View| only_times && !matches!(view, View::Timeline | View::Trace | View::Queues);
@@ -39,13 +39,13 @@ impl Drawings {
     }
 
     /// Returns the drawing of a view; `None` while it is created on another thread, which calls `wake` at the end.
-    pub fn get(&mut self, view: View, session: &Session, wake: impl FnOnce() + Send + 'static) -> Option<&Drawing> {
+    pub fn get(&mut self, view: View, data: ViewData<'_>, wake: impl FnOnce() + Send + 'static) -> Option<&Drawing> {
         if !self.made.contains_key(&view) {
-            let passes = session.plan.as_ref().map_or(0, |plan| plan.form.passes.len());
+            let passes = data.plan.map_or(0, |plan| plan.form.passes.len());
             if passes < MANY || !view.is_of_a_plan() {
-                self.made.insert(view, drawn(view, session));
+                self.made.insert(view, drawn(view, data));
             } else {
-                let job = self.jobs.entry(view).or_insert_with(|| background(view, session, wake));
+                let job = self.jobs.entry(view).or_insert_with(|| background(view, data, wake));
                 let drawing = job.wait(PATIENCE)?.unwrap_or_else(|()| failed(&job.failure()));
                 self.jobs.remove(&view);
                 self.made.insert(view, drawing);
@@ -68,19 +68,17 @@ fn failed(message: &str) -> Drawing {
 }
 
 /// Creates the drawing of a view on this thread.
-pub(super) fn drawn(view: View, session: &Session) -> Drawing {
+pub fn drawn(view: View, data: ViewData<'_>) -> Drawing {
     let none = PlanData::default();
-    let context = ViewContext { selected: None, ..session.context() };
-    view::drawing(view, session.plan.as_deref().unwrap_or(&none), context, LETTERS)
+    let context = ViewContext { selected: None, ..data.context() };
+    view::drawing(view, data.plan.map_or(&none, |plan| plan), context, LETTERS)
 }
 
 /// Creates the drawing of a view on another thread.
-fn background(view: View, session: &Session, wake: impl FnOnce() + Send + 'static) -> Job<Drawing> {
-    let (plan, against) = (session.plan.clone().unwrap_or_default(), session.compared().cloned());
-    let (trace, accuracy, budget_ms) = (session.trace.clone(), session.accuracy.clone(), session.budget_ms);
+fn background(view: View, data: ViewData<'_>, wake: impl FnOnce() + Send + 'static) -> Job<Drawing> {
+    let (plan, against, trace) = (data.plan.cloned().unwrap_or_default(), data.against.cloned(), data.trace.cloned());
     Job::start(format!("drawing {}", view.word()), wake, move |_| {
-        let (trace, accuracy) = (trace.as_deref(), accuracy.as_deref());
-        let context = ViewContext { against: against.as_deref(), trace, accuracy, budget_ms, selected: None };
+        let context = ViewContext { against: against.as_deref(), trace: trace.as_deref(), selected: None };
         view::drawing(view, &plan, context, LETTERS)
     })
 }

@@ -1,16 +1,22 @@
 //! Panels for egui. Each is a function of plain data with a small state, so an engine can embed it in its windows.
 
 mod canvas;
+mod drawings;
 pub mod grid;
 mod inspector;
 mod list;
 mod paint;
 mod questions;
+mod view_data;
+mod views;
 
 pub use canvas::{Canvas, Clicked, MARGIN};
+pub use drawings::drawn;
 pub use inspector::{Link, inspector};
 pub use list::List;
 pub use questions::{Questions, Shown};
+pub use view_data::ViewData;
+pub use views::{Reaction, Views};
 
 use crate::drawing::{Ink, Theme};
 use crate::glossary;

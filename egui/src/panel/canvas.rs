@@ -1,7 +1,7 @@
 //! Drawing with pan, zoom and pointer interaction.
 
 use super::{paint, theme};
-use crate::drawing::{Drawing, Item};
+use crate::drawing::{Drawing, Item, svg};
 use egui::emath::TSTransform;
 use egui::{Key, Modifiers, Pos2, Rect, Sense, Ui, Vec2, pos2, vec2};
 
@@ -46,6 +46,19 @@ impl Canvas {
     /// Creates a canvas that first fits the whole drawing, at any zoom.
     pub fn whole() -> Self {
         Self { least: ZOOM[0], ..Self::default() }
+    }
+
+    /// Shows buttons that fit the drawing, and copy it as text and as SVG.
+    pub fn bar(&mut self, ui: &mut Ui, drawing: &Drawing) {
+        if ui.small_button("Fit").on_hover_text("Show the whole view (F)").clicked() {
+            self.fit();
+        }
+        if ui.small_button("Copy").on_hover_text("Copy the view as text").clicked() {
+            ui.ctx().copy_text(drawing.words());
+        }
+        if ui.small_button("SVG").on_hover_text("Copy the view as an SVG document").clicked() {
+            ui.ctx().copy_text(svg(drawing, theme(ui)));
+        }
     }
 
     /// Shows a drawing with an accessible name. The first of the lit items is the selected one.
@@ -150,7 +163,7 @@ fn zoomed(view: TSTransform, factor: f32, about: Vec2) -> TSTransform {
     TSTransform::new(about + (view.translation - about) * factor, zoom)
 }
 
-/// Handles the keys listed in `app::SHORTCUTS`.
+/// Handles arrow keys, F, 1, plus and minus.
 fn keyed(ui: &Ui, view: TSTransform, drawing: &Drawing, panel: Rect) -> TSTransform {
     let pressed = |key: Key| ui.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     let middle = panel.size() / 2.0;

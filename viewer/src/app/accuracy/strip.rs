@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// Selected picture.
 #[derive(Default)]
-pub(super) struct Strip {
+pub struct Strip {
     /// Name, file, and the picture or its error.
     shown: Option<(String, PathBuf, Result<TextureHandle, String>)>,
 }

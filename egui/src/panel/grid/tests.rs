@@ -1,7 +1,7 @@
 //! Tests of the drawn part of a grid.
 
 use super::*;
-use crate::measuring::large;
+use crate::synthetic::large;
 
 /// Returns the number of visible rows and of drawn shapes, in the middle of a table of 1280×720 points.
 fn drawn(passes: usize) -> (usize, usize) {

@@ -1,6 +1,5 @@
 //! Views: pure functions from a plan to a [`Drawing`], independent of windows.
 
-pub mod accuracy;
 pub mod bandwidth;
 pub mod diff;
 mod format;
@@ -15,7 +14,6 @@ pub mod trace;
 
 pub use format::{bytes, change, change_ink, cost_ink, label};
 
-use crate::accuracy_data::AccuracyData;
 use crate::drawing::{Drawing, Item};
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
@@ -37,15 +35,13 @@ pub enum View {
     Diff,
     /// Times of many frames.
     Trace,
-    /// Error over cost of settings.
-    Accuracy,
     /// Schedule on several queues.
     Queues,
 }
 
 impl View {
     /// All views, in the order of the tabs.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 8] = [
         Self::Graph,
         Self::Timeline,
         Self::Memory,
@@ -53,13 +49,12 @@ impl View {
         Self::Inspector,
         Self::Diff,
         Self::Trace,
-        Self::Accuracy,
         Self::Queues,
     ];
 
     /// Returns whether the view shows a plan rather than another kind of file.
     pub const fn is_of_a_plan(self) -> bool {
-        !matches!(self, Self::Trace | Self::Accuracy)
+        !matches!(self, Self::Trace)
     }
 
     /// Returns the name.
@@ -72,7 +67,6 @@ impl View {
             Self::Inspector => "inspector",
             Self::Diff => "diff",
             Self::Trace => "trace",
-            Self::Accuracy => "accuracy",
             Self::Queues => "queues",
         }
     }
@@ -85,10 +79,6 @@ pub struct ViewContext<'a> {
     pub against: Option<&'a PlanData>,
     /// Frame times.
     pub trace: Option<&'a TraceData>,
-    /// Errors and costs of settings.
-    pub accuracy: Option<&'a AccuracyData>,
-    /// Time budget of the chosen frame, in milliseconds.
-    pub budget_ms: f64,
     /// Selected item.
     pub selected: Option<Item>,
 }
@@ -103,7 +93,6 @@ pub fn drawing(view: View, plan: &PlanData, context: ViewContext<'_>, letters: u
         View::Inspector => inspector::drawing(&inspector::sections(plan, context.selected), letters),
         View::Diff => diff::drawing(context.against, plan),
         View::Trace => trace::drawing(context.trace, plan),
-        View::Accuracy => accuracy::drawing(context.accuracy, context.budget_ms),
         View::Queues => queues::drawing(plan, context.trace),
     }
 }

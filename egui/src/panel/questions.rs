@@ -7,7 +7,7 @@ use crate::view::{bytes, change, label};
 use crate::what_if::{SIZES, WhatIf};
 use egui::{ComboBox, DragValue, Grid, ScrollArea, TextEdit, Ui};
 use framegraph::{Alias, Caps, Order};
-use program::input::{MAX_TEXT_BYTES, text};
+use std::path::Path;
 
 /// What-if questions and the state of their panel.
 #[derive(Clone, Debug)]
@@ -31,6 +31,8 @@ pub struct Shown<'a> {
     pub now: Option<&'a PlanData>,
     /// True while a plan is being compiled.
     pub planning: bool,
+    /// Reads a device file, or returns an error of one line. Without it, devices are chosen from the presets.
+    pub read_device: Option<fn(&Path) -> Result<Caps, String>>,
 }
 
 impl Questions {
@@ -78,16 +80,16 @@ impl Questions {
         });
         caps.response.labelled_by(device);
         ui.end_row();
-        ui.label("device file");
-        let edit =
-            ui.add(TextEdit::singleline(&mut self.device).hint_text("DEVICE.ron, then Enter").desired_width(150.0));
-        if edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
-            let path = self.device.trim().to_owned();
-            let text = text(path.as_ref(), MAX_TEXT_BYTES);
-            let caps = text.and_then(|text| framegraph::file::caps(&path, &text).map_err(|e| e.to_string()));
-            self.refused = caps.map(|caps| self.asked.caps = caps).err();
+        if let Some(read) = shown.read_device {
+            ui.label("device file");
+            let edit = TextEdit::singleline(&mut self.device).hint_text("DEVICE.ron, then Enter");
+            let edit = ui.add(edit.desired_width(150.0));
+            if edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
+                let caps = read(Path::new(self.device.trim()));
+                self.refused = caps.map(|caps| self.asked.caps = caps).err();
+            }
+            ui.end_row();
         }
-        ui.end_row();
         let label = ui.label("size").id;
         let frame = self.frame(shown);
         ui.horizontal(|ui| {
