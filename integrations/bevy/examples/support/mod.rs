@@ -1,5 +1,11 @@
 //! A small scene that Bevy renders without a window, for the examples and tests.
 
+#![allow(dead_code, reason = "each example and test uses a part")]
+
+pub mod chain;
+pub mod letterbox;
+pub mod pictures;
+
 use bevy_anti_alias::fxaa::Fxaa;
 use bevy_app::{App, PluginsState, TaskPoolPlugin};
 use bevy_asset::{Assets, Handle};
@@ -19,7 +25,39 @@ use bevy_render::{RenderApp, RenderPlugin};
 use bevy_shape::{Cuboid, Plane3d, Sphere};
 use bevy_transform::components::Transform;
 use framegraph_bevy::Device;
+use std::path::PathBuf;
 use wgpu::{TextureFormat, TextureUsages};
+
+/// Command line of the examples.
+#[derive(Debug)]
+pub struct Arguments {
+    /// Folder of the output.
+    pub folder: PathBuf,
+    /// Samples per texel.
+    pub samples: u32,
+    /// Width and height in texels.
+    pub size: [u32; 2],
+}
+
+impl Arguments {
+    /// Parses `[FOLDER] [--samples 1|4] [--size WIDTHxHEIGHT]`; the defaults are `folder`, 4 and 1280×720.
+    pub fn parse(folder: &str) -> Result<Self, Box<dyn std::error::Error>> {
+        let mut own = Self { folder: folder.into(), samples: 4, size: [1280, 720] };
+        let mut arguments = std::env::args().skip(1);
+        while let Some(argument) = arguments.next() {
+            match argument.as_str() {
+                "--samples" => own.samples = arguments.next().ok_or("--samples: 1 or 4 is missing")?.parse()?,
+                "--size" => {
+                    let text = arguments.next().ok_or("--size: WIDTHxHEIGHT is missing")?;
+                    let (width, height) = text.split_once('x').ok_or("--size: write WIDTHxHEIGHT")?;
+                    own.size = [width.parse()?, height.parse()?];
+                }
+                _ => own.folder = argument.into(),
+            }
+        }
+        Ok(own)
+    }
+}
 
 /// What the camera renders with.
 #[derive(Clone, Copy, Debug)]
