@@ -8,7 +8,7 @@ mod support;
 use framegraph::Plan;
 use framegraph_bevy::observed::{Load, Work};
 use framegraph_bevy::{Device, Report, ReportPlugin};
-use std::path::PathBuf;
+use std::path::Path;
 use support::chain::Effects;
 use support::pictures::{Difference, write_png};
 use support::{Arguments, Scene};
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Compares passes, bytes and times of the full chain.
 fn compare(
-    folder: &PathBuf,
+    folder: &Path,
     effects: Effects,
     device: &Device,
     mut bevy: Scene,
@@ -84,7 +84,7 @@ fn compare(
 }
 
 /// Returns the rows of Bevy's own passes after the main pass, from a trace.
-fn of_bevy(folder: &PathBuf, effects: Effects) -> Result<[u64; 6], Box<dyn std::error::Error>> {
+fn of_bevy(folder: &Path, effects: Effects) -> Result<[u64; 6], Box<dyn std::error::Error>> {
     let device = Device::open(Some(&folder.join("trace")))?;
     let mut scene = Scene::new(&device, &effects.of_bevy(), |app| {
         app.add_plugins(ReportPlugin);

@@ -165,6 +165,9 @@ impl Chain {
         let recorded = self.frames.record_into(size, &self.world, encoder, declare);
         self.recorded = recorded.map_err(|error| error.to_string())?.is_some();
         self.world.next_frame();
+        if self.frames.plan().steps().is_empty() {
+            return Err("the chain draws nothing; add a pass that writes `CameraTextures::output`".into());
+        }
         Ok(())
     }
 }

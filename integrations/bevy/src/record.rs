@@ -227,7 +227,7 @@ impl Draws {
                 self.groups[*index as usize % 8] = bind_group.as_ref().map(key);
             }
             RenderCommand::SetPipeline(id) => {
-                self.pipeline = state.pipelines.get(&key(id)).copied().unwrap_or_default()
+                self.pipeline = state.pipelines.get(&key(id)).copied().unwrap_or_default();
             }
             RenderCommand::SetViewport { .. } | RenderCommand::SetScissor(_) => self.restricted = true,
             RenderCommand::SetVertexBuffer { .. } => self.restricted = true,

@@ -102,7 +102,7 @@ fn keep_used(frame: &mut Observed, next: &[ObservedPass]) {
     let gpu_writes = |pass: &ObservedPass| pass.name != "upload";
     let written = frame.passes.iter().chain(next).filter(|pass| gpu_writes(pass)).flat_map(|pass| &pass.uses);
     let written = written.filter(|own| own.effect != Effect::Read);
-    let written: HashSet<usize> = written.filter_map(|own| buffer_of(own)).collect();
+    let written: HashSet<usize> = written.filter_map(buffer_of).collect();
     for pass in &mut frame.passes {
         pass.uses.retain(|own| buffer_of(own).is_none_or(|buffer| written.contains(&buffer)));
     }

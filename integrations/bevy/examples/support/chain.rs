@@ -3,7 +3,6 @@
 use super::letterbox::Letterbox;
 use super::{Choice, Scene};
 use bevy_ecs::prelude::*;
-use bevy_render::RenderApp;
 use bevy_render::sync_world::RenderEntity;
 use bevy_render::view::Tonemapping;
 use framegraph::Plan;
@@ -68,8 +67,7 @@ impl Scene {
     pub fn plan(&mut self) -> Result<Plan, String> {
         let camera = self.camera();
         let entity: Entity = self.world().get::<RenderEntity>(camera).ok_or("the camera is not rendered")?.id();
-        let chains =
-            self.app.sub_app(RenderApp).world().get_resource::<Chains>().ok_or("`ExecutePlugin` is missing")?;
+        let chains = self.render().get_resource::<Chains>().ok_or("`ExecutePlugin` is missing")?;
         chains.error().map_or(Ok(()), Err)?;
         chains.plan(entity).ok_or_else(|| "no frame was executed".into())
     }

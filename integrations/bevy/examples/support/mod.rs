@@ -126,6 +126,11 @@ impl Scene {
         self.app.world_mut()
     }
 
+    /// The render world.
+    pub fn render(&self) -> &World {
+        self.app.sub_app(RenderApp).world()
+    }
+
     /// Renders frames and waits for the GPU after each. Returns the time of the last one, in milliseconds.
     pub fn frames(&mut self, device: &Device, count: u32) -> f64 {
         let mut last = 0.0;
@@ -140,8 +145,7 @@ impl Scene {
 
     /// Reads the picture: sRGB-encoded red, green, blue and alpha.
     pub fn picture(&self, device: &Device) -> Vec<u8> {
-        let render = self.app.sub_app(RenderApp).world();
-        let images = render.resource::<RenderAssets<GpuImage>>();
+        let images = self.render().resource::<RenderAssets<GpuImage>>();
         let image = images.get(&self.output).expect("the output was rendered");
         framegraph_wgpu::read_texture(&device.gpu(), &image.texture).expect("the output can be read").rgba8()
     }
