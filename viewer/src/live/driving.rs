@@ -3,12 +3,12 @@
 //! A frame is drawn by a thread of its own, because creating its pipelines may take seconds. The panels wait for it for
 //! some milliseconds. If it takes longer, they show the last picture and the progress.
 
+use super::Live;
 use super::bisecting::Bisecting;
 use super::capture::Document;
 use super::drawing::{Copied, Done};
 use super::frame::Running;
 use super::preview::read;
-use super::Live;
 use crate::job::{Handle, Job};
 use crate::plan_data::PlanData;
 use crate::session::Session;
