@@ -15,7 +15,8 @@ mod stereo;
 pub use gpu::{GpuView, ViewId, Views};
 
 use crate::gpu_scene::draws::ViewDraws;
-use crate::gpu_scene::prepared::{Placements, PreparedScene};
+use crate::gpu_scene::placements::Placements;
+use crate::gpu_scene::prepared::PreparedScene;
 use crate::gpu_scene::previous_view::PreviousView;
 use crate::gpu_scene::punctual;
 use crate::gpu_scene::punctual::{LightLists, LightReport, LightSearch};
@@ -143,7 +144,7 @@ pub struct CameraView {
     pub light_report: LightReport,
     /// Draw lists of the view.
     pub draws: ViewDraws,
-    /// Origin of each instance's mesh in m, relative to the eye.
+    /// Points that translations of instances are relative to, in m relative to the eye.
     pub origins: Vec<Vec4>,
     /// View-independent transforms of instances.
     pub placements: Placements,
@@ -220,14 +221,14 @@ impl CameraView {
         let from_eye = |origin: &DVec3| (*origin - eye).as_vec3().extend(0.0);
         if !levels.is_empty() {
             settings.limit_levels(renderables, &visible, &mut levels);
-            self.shadows.iter_mut().for_each(|shadows| shadows.set_levels(&levels));
         }
+        self.shadows.iter_mut().for_each(|shadows| shadows.set_instances(prepared.placements(), &levels));
         let (draws, origins) = prepared.both(
             || {
                 let draws = ViewDraws::new(renderables, &visible, &levels, self.shadows.as_ref());
                 draws.indirect(|instance, level| prepared.mesh(instance, level))
             },
-            || renderables.origins().iter().map(from_eye).collect(),
+            || prepared.reference_points().iter().map(from_eye).collect(),
         );
         self.frame.blended = blended_range(renderables, &visible.blend, &settings.camera);
         let placements = prepared.placements().clone();

@@ -9,8 +9,7 @@ import package::lib::numerics::normalize_or;
 
 /// Transform of an object. Mirrored by `layout::ObjectUniforms`.
 struct ObjectUniforms {
-    /// Model-to-world matrix without the translation, which depends on the eye: its last column is
-    /// that of the identity.
+    /// Model-to-world matrix. Its translation is relative to the object's reference point, in m.
     world_from_model: mat4x4<f32>,
     /// Columns of the normal matrix: cofactors of the upper 3×3, scaled to a largest entry of one,
     /// times the sign of the determinant. Cofactors exist even without an inverse (hard case 38).
@@ -21,11 +20,13 @@ struct ObjectUniforms {
     /// Index of its material.
     material: u32,
     normal_column_z: vec3<f32>,
+    /// Index of the reference point in `origins`.
+    reference_point: u32,
 }
 
 @if(!INSTANCE_STREAM)
 @group(2) @binding(0) var<storage, read> objects: array<ObjectUniforms>;
-/// Origin of each object's mesh, in m; xyz.
+/// Reference points of objects relative to the eye, in m; xyz.
 @if(!INSTANCE_STREAM)
 @group(2) @binding(1) var<storage, read> origins: array<vec4<f32>>;
 
@@ -67,9 +68,9 @@ fn world_from_model(instance: Instance) -> mat4x4<f32> {
 
 @else
 fn world_from_model(instance: Instance) -> mat4x4<f32> {
-    let turned = objects[instance.number].world_from_model;
-    let origin = vec4<f32>(origins[instance.number].xyz, 1.0);
-    return mat4x4<f32>(turned[0], turned[1], turned[2], origin);
+    let placed = objects[instance.number].world_from_model;
+    let origin = origins[objects[instance.number].reference_point].xyz + placed[3].xyz;
+    return mat4x4<f32>(placed[0], placed[1], placed[2], vec4<f32>(origin, 1.0));
 }
 
 /// Returns the normal matrix.
