@@ -302,11 +302,10 @@ fn times(samples: &VecDeque<FrameSample>, plan: &PlanData) -> TraceData {
         let gpu_ms = sorted(of_step().filter_map(|step| step.gpu_ms).collect());
         trace.steps.push(TracedStep { name, earlier, cpu_ms, gpu_ms });
     }
-    trace.frames.extend(samples.iter().map(|sample| TracedFrame {
-        number: sample.frame,
-        warm_up: false,
-        cpu_ms: sample.cpu_ms.unwrap_or(0.0),
-        gpu_ms: sample.gpu_ms,
+    // The first frames of a plan compile shaders, and are not measured.
+    trace.frames.extend(samples.iter().filter_map(|sample| {
+        let (number, cpu_ms, gpu_ms) = (sample.frame, sample.cpu_ms?, sample.gpu_ms);
+        Some(TracedFrame { number, warm_up: false, cpu_ms, gpu_ms })
     }));
     trace
 }
