@@ -127,7 +127,7 @@ impl Attached {
 
     /// Returns whether a plan and times have arrived.
     pub fn is_complete(&self) -> bool {
-        self.running.is_some() && !self.samples.is_empty()
+        self.running.is_some() && self.shown_at.is_some()
     }
 
     /// Applies the messages that have arrived, without blocking.
@@ -150,9 +150,9 @@ impl Attached {
                     // Samples of the previous plan may arrive after a change.
                     if self.running.as_ref().is_some_and(|running| running.compilation == sample.compilation) {
                         let max = (MAX_TIMES / sample.steps.len().max(1)).clamp(16, SHOWN);
+                        sampled |= sample.cpu_ms.is_some();
                         self.samples.push_back(sample);
                         self.samples.drain(..self.samples.len().saturating_sub(max));
-                        sampled = true;
                     }
                 }
                 Ok(News::Texture(texture)) => self.take_texture(texture),
