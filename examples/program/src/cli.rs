@@ -67,6 +67,8 @@ pub fn help(command: Command) -> String {
 pub fn parse(command: Command, args: impl IntoIterator<Item = OsString>) -> Result<Parsed, String> {
     let args: Vec<OsString> = args.into_iter().collect();
     let name = OsString::from(command.get_name());
+    let mut declared = command.clone();
+    declared.build();
     let matches = match command.try_get_matches_from([name].into_iter().chain(args)) {
         Ok(matches) => matches,
         Err(error) if error.kind() == ErrorKind::DisplayHelp => return Ok(Parsed::Help(error.render().to_string())),
@@ -80,12 +82,37 @@ pub fn parse(command: Command, args: impl IntoIterator<Item = OsString>) -> Resu
         let mut indices = matches.indices_of(id).into_iter().flatten();
         for values in matches.get_raw_occurrences(id).into_iter().flatten() {
             let values: Vec<OsString> = values.map(OsStr::to_owned).collect();
+            match values.iter().find_map(|value| option_named(&declared, value)) {
+                Some("help") => return Ok(Parsed::Help(declared.render_help().to_string())),
+                Some(_) => return Err(missing(&declared, id)),
+                None => {}
+            }
             let index = indices.by_ref().take(values.len().max(1)).last().unwrap_or_default();
             found.push((index, (id.to_owned(), values)));
         }
     }
     found.sort_by_key(|(index, _)| *index);
     Ok(Parsed::Given(Given { all: found.into_iter().map(|(_, item)| item).collect() }))
+}
+
+/// Returns the name of the option that `value` is: `--out --plan` lacks the value of `--out`. Other values may start with
+/// a hyphen, such as `-1,0,2`.
+fn option_named<'a>(declared: &'a Command, value: &OsStr) -> Option<&'a str> {
+    let value = value.to_str()?;
+    let is_named = |arg: &Arg| match value.strip_prefix("--") {
+        Some(name) => arg.get_long_and_visible_aliases().is_some_and(|names| names.contains(&name)),
+        None => {
+            value.strip_prefix('-').is_some_and(|short| arg.get_short().is_some_and(|own| short == own.to_string()))
+        }
+    };
+    declared.get_arguments().find(|arg| is_named(arg)).map(|arg| arg.get_id().as_str())
+}
+
+/// Returns the message for an option without its value.
+fn missing(declared: &Command, id: &str) -> String {
+    let names = declared.get_arguments().find(|arg| arg.get_id() == id).and_then(Arg::get_value_names);
+    let value = names.and_then(|names| names.first()).map_or("value", |name| name.as_str());
+    format!("--{id}: missing {value}; see --help")
 }
 
 impl Given {
@@ -214,7 +241,9 @@ mod tests {
         assert_eq!((items[3].raw(), items[3].second()), ("3".into(), "d".into()));
         assert_eq!(items[5].parse("a number", |text| text.parse().ok()), Ok(-3));
         assert_eq!(items[5].parse("WxH", |_| None::<u8>), Err("--size -3: expected WxH".into()));
-        assert!(matches!(parsed("--help"), Ok(Parsed::Help(text)) if text.contains("--size <WxH>")));
+        for line in ["--help", "--size --help", "--enable -h"] {
+            assert!(matches!(parsed(line), Ok(Parsed::Help(text)) if text.contains("--size <WxH>")), "{line}");
+        }
     }
 
     #[test]
@@ -225,6 +254,8 @@ mod tests {
             ("-x", "-x: unknown option; see --help"),
             ("a b", "b: unexpected argument; see --help"),
             ("--size", "--size: missing WxH; see --help"),
+            ("--size --plan", "--size: missing WxH; see --help"),
+            ("--turntable 3 --plan", "--turntable: missing N; see --help"),
             ("--size 1 --size 2", "--size: specified twice; remove one"),
             ("--plan --plan", "--plan: specified twice; remove one"),
             ("--plan=3", "--plan: takes no value; see --help"),
