@@ -4,6 +4,7 @@ use crate::bench::{Bench, RED, SHOW, TestResult, draw_of, fill_full, on_every_de
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
     Binding, BindingReason, Cx, ExecuteError, Frame, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
+    texture_2d,
 };
 
 /// Two bind groups: constants, and a texture with its sampler.
