@@ -79,6 +79,7 @@ const FRAME_BINDINGS: &[&str] = &[
     "fog",
     "total_absorbance",
     "absorbance_moments",
+    "eyes",
     ShadowBindings::NAMES[0],
     ShadowBindings::NAMES[1],
     ShadowBindings::NAMES[2],
@@ -226,6 +227,7 @@ impl SurfaceBindings {
             fog.map(|fog| cx.uniform(&fog.uniforms(&view.view))),
             sums.map(|[total, _]| cx.view(total)).transpose()?.map(Binding::from),
             sums.map(|[_, moments]| cx.view(moments)).transpose()?.map(Binding::from),
+            view.view.eyes.map(|eyes| cx.uniform(&eyes)),
         ];
         let shadows = ShadowBindings::new(inputs.shadow, (view, views), cx)?;
         let effects = epilogue.bindings.iter().map(|(_, binding)| Some(binding.clone()));
@@ -240,6 +242,7 @@ impl SurfaceBindings {
                 .with_if(Feature::FROXELS, lists.is_some())
                 .with_if(Feature::REFLECTIONS, inputs.reflections.is_some())
                 .with_if(Feature::FOG, fog.is_some())
+                .with_if(Feature::STEREO, cx.targets().layers > 1)
                 .with_if(Feature::HALF, shading.precision == Precision::Half),
             shading: *shading,
             bands: lighting.image.bands,

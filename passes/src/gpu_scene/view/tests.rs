@@ -139,7 +139,7 @@ fn an_instance_has_one_level_of_detail_in_all_that_is_drawn() -> Result<(), Box<
     // Keys of the maps of a punctual light, which do not depend on the eye.
     let keys = |far_m, lod_error_px| {
         let shadows = view(&seen(far_m, lod_error_px, 64)).shadows;
-        shadows.map_or(Vec::new(), |shadows| shadows.keys[shadows.cascades..].to_vec())
+        shadows.map_or(Vec::new(), |shadows| shadows.keys()[shadows.cascades..].to_vec())
     };
     assert!(keys(1.0, 0.0).len() == 6 && keys(1.0, 0.0) == keys(3.0, 0.0), "they do");
     assert!(keys(1.0, 1.0) != keys(3.0, 1.0), "maps of other levels are taken for the same");
