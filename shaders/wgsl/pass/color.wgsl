@@ -49,7 +49,6 @@ import package::lib::moment_transparency::{
 };
 import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::real::{real, real2, real3, to_real3};
-import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 @if(IRIDESCENCE)
 import package::lib::thin_film::f0_from_reflectance;
@@ -64,10 +63,8 @@ import package::shading::through::is_behind;
 import package::shading::through::{translucency_of, far_side};
 import package::shading::micro_shadow::micro_visibility;
 import package::shading::object_light::takes_sun;
-import package::shading::quality::{
-    ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
-    SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
-};
+import package::shading::quality::{F90_FADES, PUNCTUAL_COMPENSATION, ROUGHNESS_FLOOR};
+import package::shading::roughness::shaded_roughness;
 import package::shading::punctual::add_punctual;
 import package::shading::shadow::{sun_share, sun_visibility, cascade_tint};
 import package::shading::shadow_catcher::caught_shadow;
@@ -120,18 +117,6 @@ fn vs_main(
     @location(5) color: vec4<f32>,
 ) -> SurfaceVertex {
     return surface_vertex(instance, position, normal, tangent, vec4<f32>(uv0, uv1), color);
-}
-
-/// Returns the perceptual roughness for shading: at least the floor, increased by the variation of
-/// the normal within the pixel.
-fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
-    var r = clamp(roughness, ROUGHNESS_FLOOR, 1.0);
-    if SPECULAR_AA_VARIANCE > 0.0 {
-        let dx = dpdx(smooth_side);
-        let dy = dpdy(smooth_side);
-        r = normal_filtering(r, dx, dy, SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD);
-    }
-    return r;
 }
 
 /// Returns the clear coat of a fragment.
