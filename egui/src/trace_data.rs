@@ -3,6 +3,9 @@
 //! `render --trace` and `framegraph_wgpu::Trace` write the file in Chrome's Trace Event Format. CPU and GPU are processes,
 //! each with a track of frames and a track of steps.
 
+#[cfg(feature = "wgpu")]
+mod executor;
+
 use crate::plan_data::{PlanData, Step};
 use serde::Deserialize;
 use std::collections::HashMap;
@@ -107,7 +110,7 @@ impl TraceData {
 }
 
 /// Returns the name of a step in traces: its passes, without the numbers that plans give to passes of equal names.
-fn traced_name(plan: &PlanData, step: &Step) -> String {
+pub fn traced_name(plan: &PlanData, step: &Step) -> String {
     let plain = |name: &String| {
         let own = match name.rsplit_once('#') {
             Some((plain, number)) if number.parse::<u32>().is_ok() => plain,

@@ -63,6 +63,8 @@ impl Feature {
     pub const MATERIAL_TABLE: Self = Self("MATERIAL_TABLE");
     /// Reads the object's attributes from the instance stream. Without it, the stream holds only the object's number.
     pub const INSTANCE_STREAM: Self = Self("INSTANCE_STREAM");
+    /// Draws two eyes at once with multiview: left and right are two layers of the attachments.
+    pub const STEREO: Self = Self("STEREO");
     /// Computes shading in f16 where that is accurate enough; the device must have `SHADER_F16`.
     pub const HALF: Self = Self("HALF");
 
@@ -98,6 +100,7 @@ impl Feature {
         Self::VERTEX_COLORS,
         Self::MATERIAL_TABLE,
         Self::INSTANCE_STREAM,
+        Self::STEREO,
         Self::HALF,
     ];
 

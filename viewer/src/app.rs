@@ -2,6 +2,8 @@
 
 mod accuracy;
 #[cfg(feature = "window")]
+mod attaching;
+#[cfg(feature = "window")]
 mod chosen;
 #[cfg(feature = "window")]
 pub mod dialog;
@@ -37,6 +39,12 @@ pub struct Viewer {
     /// Live frame.
     #[cfg(feature = "window")]
     pub live: Option<crate::live::Live>,
+    /// Attached engine.
+    #[cfg(feature = "window")]
+    pub attached: Option<crate::attached::Attached>,
+    /// Typed address of an engine.
+    #[cfg(feature = "window")]
+    address: String,
     /// File dialog.
     #[cfg(feature = "window")]
     dialog: dialog::Dialog,
@@ -65,6 +73,10 @@ impl Viewer {
             accuracy: accuracy::AccuracyPane::default(),
             #[cfg(feature = "window")]
             live: None,
+            #[cfg(feature = "window")]
+            attached: None,
+            #[cfg(feature = "window")]
+            address: framegraph_wgpu::remote::DEFAULT_ADDRESS.into(),
             #[cfg(feature = "window")]
             dialog: dialog::Dialog::default(),
             #[cfg(feature = "window")]
@@ -99,6 +111,10 @@ impl Viewer {
         if let Some(live) = &mut self.live {
             live.tick(&mut self.session, ui.input(|i| i.stable_dt));
         }
+        #[cfg(feature = "window")]
+        if let Some(attached) = &mut self.attached {
+            attached.poll(&mut self.session);
+        }
         self.refresh();
         self.dropped(ui.ctx());
         #[cfg(feature = "window")]
@@ -118,6 +134,8 @@ impl Viewer {
             accuracy,
             #[cfg(feature = "window")]
             live: &mut self.live,
+            #[cfg(feature = "window")]
+            attached: &mut self.attached,
             #[cfg(feature = "window")]
             typed: &mut self.typed.0,
         };
@@ -223,6 +241,11 @@ impl Viewer {
         {
             return;
         }
+        // The next plan of an engine would replace the file.
+        #[cfg(feature = "window")]
+        if role == Role::Shown {
+            self.detach();
+        }
         self.session.open(path, role);
     }
 
@@ -261,6 +284,8 @@ impl Viewer {
             }
             #[cfg(feature = "window")]
             self.export_menu(ui);
+            #[cfg(feature = "window")]
+            self.attach_menu(ui);
             ui.separator();
             if let Some(doing) = self.session.doing().map(str::to_owned) {
                 match self.session.progress() {

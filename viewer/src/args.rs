@@ -46,6 +46,12 @@ fn command() -> clap::Command {
              (spheres)",
         )
         .conflicts_with_all(["headless", "standard"]),
+        option(
+            "attach",
+            "HOST:PORT",
+            "Show plan, times and textures of a running engine (framegraph_wgpu::remote; 127.0.0.1:9870)",
+        )
+        .conflicts_with_all(["FILE", "plan", "live", "standard"]),
         option("settings", "PRESET", "Initial settings with --live: a preset or a FILE.ron (high)"),
         option(
             "environment",
@@ -80,8 +86,11 @@ fn command() -> clap::Command {
             "Draw continuously, close the window after N or N + 1 frames, and print their number",
         )
         .conflicts_with_all(["headless", "measure"]),
-        flag("measure", "Print the cost of the panels on this machine, without a window")
-            .conflicts_with_all(["FILE", "headless", "live", "plan", "standard"]),
+        flag(
+            "measure",
+            "Print the cost of the panels on this machine, without a window, also while the scene FILE loads (spheres)",
+        )
+        .conflicts_with_all(["headless", "live", "plan", "standard"]),
     ])
 }
 
@@ -94,6 +103,8 @@ pub struct Args {
     pub standard: Option<String>,
     /// Draws the standard frame; the file is a scene.
     pub live: bool,
+    /// Address of the engine to attach to.
+    pub attach: Option<String>,
     /// Initial settings of the live frame.
     pub settings: Option<String>,
     /// Prints the cost of the panels.
@@ -168,6 +179,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
         standard: None,
         live: false,
         measure: false,
+        attach: None,
         settings: None,
         environment: None,
         against: None,
@@ -197,6 +209,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
             "environment" => out.environment = Some(item.raw().into()),
             "trace" => out.trace = Some(item.raw().into()),
             "out" => out.out = Some(item.raw().into()),
+            "attach" => out.attach = Some(item.text()?),
             "caps" => out.caps = item.text()?,
             "select" => out.select = Some(item.text()?),
             "standard" => out.standard = Some(item.text()?),
@@ -219,7 +232,8 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
             _ => out.frames = Some(item.parse("a whole number of frames", |text| text.parse().ok())?),
         }
     }
-    if headless && out.file.is_none() && out.standard.is_none() && out.view.unwrap_or(GRAPH).is_of_a_plan() {
+    let has_plan = out.file.is_some() || out.standard.is_some() || out.attach.is_some();
+    if headless && !has_plan && out.view.unwrap_or(GRAPH).is_of_a_plan() {
         return Err("--headless: requires a file; add --plan FILE".into());
     }
     Ok(Command::Show(Box::new(out)))
@@ -283,9 +297,10 @@ mod tests {
             ("a.ron b.ron", "b.ron: unexpected argument"),
             ("a.ron --plan b.ron", "cannot be used with"),
             ("--live --standard low", "--live"),
+            ("a.ron --attach 127.0.0.1:1", "--attach"),
             ("--settings low", "--settings: requires --live"),
             ("--frames 3 --headless --plan a.json --out a.png", "--frames: cannot be used with"),
-            ("a.json --measure", "cannot be used with"),
+            ("--live --measure", "cannot be used with"),
             ("a.json --whole", "requires --headless"),
             ("a.json --picture 8x8", "requires --headless"),
             ("--capz tiler", "--capz: unknown option; did you mean `--caps`?"),

@@ -34,6 +34,11 @@ impl GraphSource {
         Ok(Self { path, text, included, features })
     }
 
+    /// Takes the text of a graph that includes no files and has no features, such as one from an engine.
+    pub fn of_text(name: String, text: String) -> Self {
+        Self { path: name, text, included: Included::default(), features: Vec::new() }
+    }
+
     /// Returns the file and its includes, for watching.
     pub fn files(&self) -> Vec<PathBuf> {
         [self.path.as_str()].into_iter().chain(self.included.paths()).map(PathBuf::from).collect()

@@ -9,6 +9,8 @@
 pub mod accuracy_data;
 pub mod accuracy_view;
 pub mod app;
+#[cfg(feature = "window")]
+pub mod attached;
 mod file_bytes;
 pub mod graph_source;
 pub mod history;

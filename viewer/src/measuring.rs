@@ -1,5 +1,7 @@
 //! Cost of the panels: layout and scrolling of a large graph, and every panel of the standard frame.
 
+mod loading;
+
 use crate::app::{Pane, Session, Viewer};
 use crate::offscreen::Offscreen;
 use crate::standard_frame::StandardFrame;
@@ -17,11 +19,11 @@ const SIZE: [u32; 2] = [1280, 720];
 /// Number of measured frames.
 const FRAMES: usize = 40;
 
-/// Measures and returns a Markdown table.
+/// Measures and returns a Markdown table. `scene` is loaded while tabs are clicked: a built-in name or a path.
 ///
 /// # Errors
-/// An error of the standard frame or of the device.
-pub fn table() -> Result<String, String> {
+/// An error of the standard frame, of the scene or of the device.
+pub fn table(scene: &str) -> Result<String, String> {
     let profile = if cfg!(debug_assertions) { "not optimized" } else { "optimized" };
     let mut rows = vec![("measurement".to_owned(), format!("median, ms ({profile})"))];
     let plan = large(2000)?;
@@ -36,10 +38,25 @@ pub fn table() -> Result<String, String> {
     let (shown, idle) = frames(&mut viewer, true, None)?;
     rows.push((format!("CPU time of a frame while scrolling, {passes} passes"), ms(shown)));
     rows.push(("repaints without input".into(), if idle { "no" } else { "yes" }.into()));
+    for view in [View::Timeline, View::Memory] {
+        viewer.turn_to(Pane::View(view));
+        let shown = frames(&mut viewer, true, None)?.0;
+        rows.push((
+            format!("CPU time of a frame while scrolling, {passes} passes, {} in front", view.word()),
+            ms(shown),
+        ));
+    }
+    viewer.turn_to(Pane::View(View::Graph));
     match Offscreen::as_windows() {
         Ok(mut screen) => {
             let drawn = frames(&mut viewer, true, Some(&mut screen))?.0;
             rows.push((format!("time of a frame while scrolling, drawn by {}", screen.gpu().describe()), ms(drawn)));
+            let loading::Answers { took, loaded } = loading::answers(screen.gpu(), scene, SIZE)?;
+            let (clicks, loaded_s) = (took.len(), loaded.as_secs_f64());
+            let during = format!("while {scene} loads for {loaded_s:.1} s");
+            rows.push((format!("from a click on a tab to its frame {during}, {clicks} clicks"), ms(took[clicks / 2])));
+            let longest = took.last().copied().unwrap_or_default();
+            rows.push((format!("longest time from a click on a tab to its frame {during}"), ms(longest)));
         }
         Err(error) => rows.push(("no device".into(), error)),
     }

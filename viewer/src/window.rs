@@ -88,6 +88,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             shown.turn_to(view);
         }
         shown.recent = remembered.recent;
+        if let Some(address) = &args.attach {
+            let wake = cc.egui_ctx.clone();
+            shown.attach(address, move || wake.request_repaint());
+        }
         let files =
             [(args.against, Role::Against), (args.trace, Role::Shown), (args.file.filter(|_| !args.live), Role::Shown)];
         let waiting = files.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();

@@ -2,20 +2,11 @@
 
 use crate::bench::{Bench, GREEN, RED, SHOW, TestResult, draw_of, fill_corner, fill_full, on_every_device};
 use framegraph::{Entry, Exit, Extent, Format, Intent, TextureDesc};
-use framegraph_wgpu::{Gpu, Raster, read_texture};
+use framegraph_wgpu::{Gpu, Raster, read_texture, texture_2d};
 use wgpu::{TextureFormat, TextureUsages};
 
 fn texture(gpu: &Gpu, side: u32, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("mine"),
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
+    gpu.device.create_texture(&texture_2d("mine", [side, side], format, usage))
 }
 
 fn declare(frame: &mut framegraph_wgpu::Frame) -> Result<framegraph::Texture, framegraph::DeclareError> {

@@ -4,6 +4,7 @@ use crate::bench::{Bench, RED, SHOW, TestResult, draw_of, fill_full, on_every_de
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
     Binding, BindingReason, Cx, ExecuteError, Frame, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
+    texture_2d,
 };
 
 /// Two bind groups: constants, and a texture with its sampler.
@@ -210,14 +211,8 @@ fn an_unsupported_view_of_an_import_is_named() -> TestResult {
         let mut bench = Bench::new(gpu, 8, 8);
         for (formats, refused) in [(&[][..], true), (&[wgpu::TextureFormat::Rgba8UnormSrgb][..], false)] {
             let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("image"),
-                size: wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
                 view_formats: formats,
+                ..texture_2d("image", [8, 8], wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureUsages::TEXTURE_BINDING)
             });
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
             bench.declare(|frame| {
@@ -256,16 +251,12 @@ fn a_rejected_submission_names_the_import() -> TestResult {
             gpu.device.create_buffer(&size)
         };
         let image = || {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("theirs"),
-                size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
+            gpu.device.create_texture(&texture_2d(
+                "theirs",
+                [4, 4],
+                wgpu::TextureFormat::Rgba8Unorm,
+                wgpu::TextureUsages::TEXTURE_BINDING,
+            ))
         };
         let uses = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         // The resource that breaks the submission, and the one that the error names.

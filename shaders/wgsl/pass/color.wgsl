@@ -9,6 +9,8 @@ import package::interface::epilogue::epilogue;
 @if(FOG)
 import package::interface::fog::in_fog;
 import package::interface::frame::frame;
+@if(STEREO)
+import package::interface::frame::eyes;
 import package::interface::material::{
     material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_SHADOW_CATCHER, TRAIT_UNLIT, material_has,
     base_color, metallic_roughness, emission, specular_factors,
@@ -197,7 +199,9 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     let smooth_side = smooth_normal(vertex, geometric, side);
     var roughness = shaded_roughness(metal_rough.y, smooth_side);
     let normal = shading_normal(vertex, smooth_side, side);
-    let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
+    @if(STEREO) let camera = eyes[vertex.eye].camera;
+    @else let camera = frame.camera;
+    let to_viewer = camera.xyz - camera.w * vertex.world;
     let view = normalize_or(to_viewer, normal);
     let nov = clamp_nov(real(dot(normal, view)));
     let color = to_real3(base);

@@ -35,6 +35,9 @@ struct SurfaceVertex {
     /// Index of the material.
     @if(MATERIAL_TABLE)
     @location(6) @interpolate(flat) material: u32,
+    /// Eye that is drawn.
+    @if(STEREO)
+    @location(7) @interpolate(flat) eye: u32,
 }
 
 /// Returns the output for a vertex; `uv` holds both sets of texture coordinates.
@@ -48,7 +51,7 @@ fn surface_vertex(
 ) -> SurfaceVertex {
     let world = world_position(position, instance);
     var vertex: SurfaceVertex;
-    vertex.position = clip_position(world);
+    vertex.position = clip_position(world, instance);
     vertex.world = world;
     vertex.normal = world_normal(normal, instance);
     @if(TEXTURED || ANISOTROPY)
@@ -58,6 +61,7 @@ fn surface_vertex(
     @if(VERTEX_COLORS) vertex.color = color;
     @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
     vertex.scale_m = mesh_scale_m(instance);
+    @if(STEREO) vertex.eye = instance.eye;
     @if(MATERIAL_TABLE) vertex.material = material_number(instance);
     return vertex;
 }

@@ -125,9 +125,22 @@ pub(super) fn in_tabs(live: bool) -> Tree<Pane> {
     Tree::new_tabs(egui::Id::unique("panes"), panes_of(&arranged(live)))
 }
 
-/// Returns whether an arrangement contains every pane once.
+/// Adds the texture viewer to the tabs of the inspector if it is missing, for an attached engine.
+#[cfg(feature = "window")]
+pub(super) fn add_textures(tree: &mut Tree<Pane>) {
+    let of = |tree: &Tree<Pane>, pane| tree.tiles.find_pane(&pane);
+    if of(tree, Pane::Preview).is_none()
+        && let Some(tabs) = of(tree, Pane::View(View::Inspector)).and_then(|tile| tree.tiles.parent_of(tile))
+    {
+        let tile = tree.tiles.insert_pane(Pane::Preview);
+        tree.move_tile_to_container(tile, tabs, usize::MAX, false);
+    }
+}
+
+/// Returns whether an arrangement contains every pane once. The texture viewer of an attached engine is optional.
 pub(super) fn is_whole(tree: &Tree<Pane>, live: bool) -> bool {
-    let (found, all) = (panes_of(tree), panes_of(&arranged(live)));
+    let (mut found, all) = (panes_of(tree), panes_of(&arranged(live)));
+    found.retain(|pane| live || *pane != Pane::Preview);
     found.len() == all.len() && found.into_iter().collect::<BTreeSet<_>>() == all.into_iter().collect()
 }
 
@@ -139,6 +152,8 @@ pub(super) struct Panes<'a> {
     pub accuracy: &'a mut AccuracyPane,
     #[cfg(feature = "window")]
     pub live: &'a mut Option<crate::live::Live>,
+    #[cfg(feature = "window")]
+    pub attached: &'a mut Option<crate::attached::Attached>,
     /// Typed paths of a scene and an environment.
     #[cfg(feature = "window")]
     pub typed: &'a mut [String; 2],
@@ -176,7 +191,13 @@ impl Panes<'_> {
     fn drawn(&mut self, ui: &mut Ui, pane: Pane) {
         use crate::live::panel as live;
         let [scene, light] = &mut *self.typed;
-        let Some(drawn) = &mut *self.live else { return };
+        let Some(drawn) = &mut *self.live else {
+            match self.attached {
+                Some(attached) => live::remote_preview(ui, attached, self.session),
+                None => _ = ui.label("Attach to an engine to see its textures"),
+            }
+            return;
+        };
         match pane {
             Pane::Viewport => live::viewport(ui, drawn, self.session),
             Pane::Settings => live::settings(ui, drawn),

@@ -9,7 +9,7 @@ use framegraph_vulkan::testing::{Bound, DepthTest, Dispatch, Draw, Kit, Part, Te
 use framegraph_vulkan::{Cx, Executor, Imports, MemoryReport, RecordError};
 
 /// Width and height in texels.
-const SIZE: [u32; 2] = [64, 48];
+pub const SIZE: [u32; 2] = [64, 48];
 
 /// Cost of a frame, and the difference of its picture from the reference.
 pub struct Report {
@@ -23,6 +23,8 @@ pub struct Report {
     pub memory: MemoryReport,
     /// Largest difference of a channel, in 8-bit steps.
     pub difference: u8,
+    /// The picture, four bytes per texel.
+    pub pixels: Vec<u8>,
 }
 
 /// Handles of the frame.
@@ -68,11 +70,11 @@ const VERTICES: &str = "
 }
 ";
 
-const DEPTH: &str = "
+pub const DEPTH: &str = "
 @fragment fn fs_main(@builtin(position) at: vec4f) -> @builtin(frag_depth) f32 { return 0.25 + floor(at.x / 8.0) / 32.0; }
 ";
 
-const AO: &str = "
+pub const AO: &str = "
 @group(0) @binding(0) var depth: texture_depth_2d;
 @group(0) @binding(1) var ao: texture_storage_2d<r32float, write>;
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -82,11 +84,11 @@ const AO: &str = "
 }
 ";
 
-const SHADOW: &str = "
+pub const SHADOW: &str = "
 @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f { return vec4f(0.5 + floor(at.y) / 32.0); }
 ";
 
-const COLOR: &str = "
+pub const COLOR: &str = "
 @group(0) @binding(0) var ao: texture_2d<f32>;
 @group(0) @binding(1) var shadow: texture_2d<f32>;
 @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
@@ -174,6 +176,7 @@ pub fn run(device: &TestDevice, samples: u8) -> Result<Report, Box<dyn std::erro
         subpasses,
         memory: executor.memory(),
         difference: differences.max().unwrap_or(u8::MAX),
+        pixels,
     })
 }
 
