@@ -6,7 +6,9 @@
 //! - Drawings as data ([`drawing`]), created by pure functions ([`view`]).
 //! - Panels that paint drawings and tables ([`panel`]).
 //!
-//! The crate depends on egui alone, and on no window library or graphics API.
+//! Without features, the crate depends on egui alone, and on no window library or graphics API. The feature `overlay` draws
+//! egui over a frame in a window of winit (`overlay::Overlay`), and the feature `wgpu` reads the frame times of `framegraph-wgpu`
+//! (`trace_data::TraceData::of_trace`).
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod drawing;
@@ -14,9 +16,14 @@ pub mod editor;
 pub mod glossary;
 pub mod job;
 pub mod layout;
+#[cfg(feature = "overlay")]
+pub mod overlay;
 pub mod panel;
 pub mod plan_data;
+mod plan_panels;
 pub mod synthetic;
 pub mod trace_data;
 pub mod view;
 pub mod what_if;
+
+pub use plan_panels::{PlanPanels, Preview};

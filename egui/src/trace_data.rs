@@ -3,6 +3,9 @@
 //! `render --trace` and `framegraph_wgpu::Trace` write the file in Chrome's Trace Event Format. CPU and GPU are processes,
 //! each with a track of frames and a track of steps.
 
+#[cfg(feature = "wgpu")]
+mod executor;
+
 use crate::plan_data::{PlanData, Step};
 use serde::Deserialize;
 use std::collections::HashMap;

@@ -157,7 +157,7 @@ pub use ::wgpu;
 pub use cache::CacheCounts;
 pub use device::adapter::{AdapterRequest, describe, is_software};
 pub use device::error::{DeviceError, DeviceErrors, ErrorScopes};
-pub use device::format::{buffer_usages, format_of, texture_format, texture_usages};
+pub use device::format::{buffer_usages, format_of, texture_2d, texture_format, texture_usages};
 pub use device::gpu::Gpu;
 pub use device::open_error::OpenError;
 pub use device::pipeline_cache::PipelineCacheError;

@@ -91,8 +91,7 @@ pub enum Command {
 /// Default of `--budget-steps`.
 const BUDGET_STEPS: u64 = 150_000_000;
 
-const ABOUT: &str = "\
-Compiles a frame graph from a file without a GPU and prints the plan.";
+const ABOUT: &str = "Compiles a frame graph from a file without a GPU and prints the plan.";
 
 const USAGE: &str = "\
 plan FRAME.ron [OPTIONS]

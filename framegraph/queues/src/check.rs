@@ -87,7 +87,14 @@ pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
     }
     let mut found = Vec::new();
     for (step, lane) in plan.step_ids().zip(lanes) {
-        let asks = |member: &StepPass| plan.graph().passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE);
+        let graph = plan.graph();
+        let asks = |member: &StepPass| {
+            graph.passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE)
+                || graph
+                    .accesses_of(member.pass)
+                    .iter()
+                    .any(|access| graph.aliases_of(access.resource).next().is_some())
+        };
         let asked = *lane != QueueId::MAIN && plan.passes_of(step).iter().any(asks);
         if asked || !layout.queues[lane.index()].runs(plan.steps()[step.index()].kind) {
             found.push(Violation::WrongQueue { step });

@@ -17,8 +17,7 @@ pub fn options() -> Vec<Arg> {
             "resolve",
             "linear|tone",
             "MSAA resolve of radiance, or of tone-mapped values, which keeps edges smooth in front of bright areas \
-             when \
-             bloom, --dof or --taa read the radiance (linear)",
+             when bloom, --dof or --taa read the radiance (linear)",
         ),
         option(
             "scale",
@@ -31,8 +30,7 @@ pub fn options() -> Vec<Arg> {
             "dynamic-resolution",
             "MS[:MIN]",
             "In --turntable and --sequence, scale each frame so that it takes MS milliseconds, but not below MIN \
-             percent \
-             of the sides, 25 to 100 (50)",
+             percent of the sides, 25 to 100 (50)",
         ),
         option(
             "lod",
@@ -44,8 +42,7 @@ pub fn options() -> Vec<Arg> {
         option(
             "layers",
             "MASK",
-            "Visible layers of the scene, one bit each, such as 3, 0x03 or 0b11; objects in none of them are not \
-             drawn \
+            "Visible layers of the scene, one bit each, such as 3, 0x03 or 0b11; objects in none of them are not drawn \
              and cast no shadows (1)",
         ),
     ];

@@ -14,18 +14,15 @@ pub fn options() -> Vec<Arg> {
         option(
             "tone-map",
             "NAME",
-            "linear, hill (ACES fit by Hill; default), filmic, neutral, aces (as in Filament), aces-legacy \
-             (brighter by \
-             1/0.6), linear-2020 (clipped in Rec.2020), agx, agx-golden, agx-punchy, gt7, display-range (one color \
-             per \
-             stop), mobile (cheap, with the sRGB encoding), or generic[:CONTRAST:IN:OUT:WHITE]",
+            "linear, hill (ACES fit by Hill; default), filmic, neutral, aces (as in Filament), aces-legacy (brighter \
+             by 1/0.6), linear-2020 (clipped in Rec.2020), agx, agx-golden, agx-punchy, gt7, display-range (one color \
+             per stop), mobile (cheap, with the sRGB encoding), or generic[:CONTRAST:IN:OUT:WHITE]",
         ),
         option(
             "grade",
             "KEY=X,...",
-            "Color grading in Filament's order, in Rec.2020, such as contrast=1.2,slope=1:1:0.9; `--grade help` \
-             lists the \
-             keys",
+            "Color grading in Filament's order, in Rec.2020, such as contrast=1.2,slope=1:1:0.9; `--grade help` lists \
+             the keys",
         ),
         option(
             "grade-by",
