@@ -7,8 +7,8 @@ use wgpu::{AstcBlock, AstcChannel, BufferUsages, TextureAspect, TextureFormat, T
 pub fn texture_2d(
     label: &str,
     [width, height]: [u32; 2],
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
+    format: TextureFormat,
+    usage: TextureUsages,
 ) -> wgpu::TextureDescriptor<'_> {
     wgpu::TextureDescriptor {
         label: Some(label),
