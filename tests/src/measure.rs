@@ -4,6 +4,7 @@ pub mod albedo;
 pub mod board;
 pub mod cards;
 pub mod columns;
+pub mod controller;
 pub mod facts;
 pub mod furnace;
 pub mod grading;

@@ -6,6 +6,7 @@ mod bloom;
 mod cases;
 mod combination;
 mod compressed;
+mod controller;
 mod cubes;
 mod degenerate;
 mod dof;

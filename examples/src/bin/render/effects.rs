@@ -3,7 +3,6 @@
 
 use crate::parse::{field, number};
 use framegraph_passes::effects::transmission::MAX_GLASS_LAYERS;
-use framegraph_passes::effects::upscale::DynamicResolution;
 use framegraph_passes::{
     BloomSettings, DofSettings, FogSettings, OcclusionSettings, ReflectionSettings, Settings, SettingsTable,
     TaaSettings, Transparency, Upscale,
@@ -96,8 +95,8 @@ pub struct Effects {
     pub tone_resolve: bool,
     /// Upscaling.
     pub upscale: Option<Upscale>,
-    /// Dynamic resolution.
-    pub dynamic: Option<DynamicResolution>,
+    /// Dynamic resolution: frame time in ms, and the minimum scale in percent of width and height.
+    pub dynamic: Option<[f64; 2]>,
     /// Maximum geometric error of levels of detail, in pixels; 0 draws all triangles.
     pub lod_error_px: f32,
     /// Method for blended surfaces.
@@ -200,9 +199,8 @@ fn mask(text: &str) -> Option<u8> {
 }
 
 /// Parses a frame time in milliseconds, and an optional minimum scale in percent after a colon.
-fn dynamic(text: &str) -> Option<DynamicResolution> {
+fn dynamic(text: &str) -> Option<[f64; 2]> {
     let (target, min) = text.split_once(':').unwrap_or((text, "50"));
     let of = |part: &str, max: f64| part.parse::<f64>().ok().filter(|x| *x > 0.0 && *x <= max);
-    let (target_ms, least_percent) = (of(target, 1e6)?, of(min, 100.0).filter(|min| *min >= 25.0)?);
-    Some(DynamicResolution { target_ms, least_percent, ..DynamicResolution::DEFAULT })
+    Some([of(target, 1e6)?, of(min, 100.0).filter(|min| *min >= 25.0)?])
 }

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 success, 1 a check or its negative control failed, 2 wrong arguments or an error.
 
+mod controller;
 mod facts;
 mod grading;
 mod hard_cases;
@@ -24,7 +25,8 @@ type Outcome = Result<bool, Box<dyn Error>>;
 /// A subcommand: its name, a summary, and its function of the remaining arguments.
 type Subcommand = (&'static str, &'static str, fn(&[&str]) -> Outcome);
 
-const SUBCOMMANDS: [Subcommand; 11] = [
+const SUBCOMMANDS: [Subcommand; 12] = [
+    ("controller", "traces of the frame-time controller, simulated and on the default adapter", controller::run),
     ("facts", "effects that feature culling drops from six scenes under four presets, and the time saved", facts::run),
     ("grading", "error of color grading tables against the exact functions", grading::run),
     (
