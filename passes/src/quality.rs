@@ -12,6 +12,7 @@
 
 mod controller;
 mod groups;
+mod guaranteed;
 mod measured;
 pub mod preset;
 mod select;
@@ -19,6 +20,7 @@ mod settle;
 
 pub use controller::{Controller, percents};
 pub use groups::{FrameOption, GROUPS, Group, reference};
+pub use guaranteed::{Guaranteed, ROUNDING_STEPS, StepBound, bound, guaranteed, rounding_steps};
 pub use measured::{Choices, Measured, MeasuredError, MeasuredGroup, MeasuredOption, MeasuredPair, MeasuredShare};
 pub use select::{Chosen, Offer, Offers, Pair};
 pub use settle::{Bound, Settled, Trial, settle};

@@ -2,6 +2,7 @@
 
 pub mod albedo;
 pub mod board;
+pub mod bounds;
 pub mod cards;
 pub mod columns;
 pub mod controller;

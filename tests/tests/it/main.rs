@@ -3,6 +3,7 @@
 mod accuracy;
 mod bisect;
 mod bloom;
+mod bounds;
 mod cases;
 mod combination;
 mod compressed;

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 success, 1 a check or its negative control failed, 2 wrong arguments or an error.
 
+mod bounds;
 mod controller;
 mod facts;
 mod grading;
@@ -25,7 +26,8 @@ type Outcome = Result<bool, Box<dyn Error>>;
 /// A subcommand: its name, a summary, and its function of the remaining arguments.
 type Subcommand = (&'static str, &'static str, fn(&[&str]) -> Outcome);
 
-const SUBCOMMANDS: [Subcommand; 12] = [
+const SUBCOMMANDS: [Subcommand; 13] = [
+    ("bounds", "adversarial search for scenes that break a proved bound of an option", bounds::run),
     ("controller", "traces of the frame-time controller, simulated and on the default adapter", controller::run),
     ("facts", "effects that feature culling drops from six scenes under four presets, and the time saved", facts::run),
     ("grading", "error of color grading tables against the exact functions", grading::run),
