@@ -10,9 +10,17 @@ const FAR: f64 = 1.15;
 const ALIKE: f64 = 1.5;
 /// Fraction of the target that a new level may take.
 const AIM: f64 = 0.9;
-/// Greatest learned factor between the time and the cost of a level.
-const MAX_GROWTH: f64 = 1.35;
-/// Number of frames for which a rise is on trial, and for which the previous level predicts costs.
+/// Factor by which each failed rise increases the prediction of later ones, at least.
+const MIN_GROWTH: f64 = 1.3;
+/// Greatest product of these factors.
+const MAX_GROWTH: f64 = 16.0;
+/// Factor on the distance between the median and the fourth-largest time, which a rise leaves free.
+const SPREADS: f64 = 2.0;
+/// Number of frames for which a rise is on trial.
+const TRIAL: u32 = 240;
+/// Factor on the time of a level below which the scene counts as another one.
+const CHEAPER: f64 = 0.6;
+/// Number of frames for which the previous level predicts costs.
 const RECENT: u32 = 120;
 
 /// Chooses one of several quality levels, so that frames stay within a time. Levels are a ladder of scales
@@ -20,11 +28,11 @@ const RECENT: u32 = 120;
 /// needed: only the ratio of the levels' costs is given.
 ///
 /// The level falls if 6 consecutive frames of similar times exceed the target by 15 %, or if the median of 15 frames
-/// exceeds it. It
-/// rises if the fourth-largest of 15 times, scaled by the ratio of costs, stays below 90 % of the target. A frame with
-/// costs `a + b × cost` and `a ≥ 0` never takes more than this prediction. Therefore a rise is not followed by a fall,
-/// unless the scene changes. If costs grow faster, the controller learns the factor from the first failed rise. Single
-/// outliers are ignored, also in groups of up to 5 frames.
+/// exceeds it. It rises if a high estimate of the time, scaled by the ratio of costs, stays below 90 % of the target. The
+/// estimate lies above the median by twice the distance to the fourth-largest of 15 times. A frame with costs
+/// `a + b × cost` and `a ≥ 0` never takes more than this prediction. Therefore a fall follows a rise only if the scene
+/// changes or noise is large and correlated. Each such fall raises later predictions by 30 % or more, until the time
+/// falls by 40 %. Single outliers are ignored, also in groups of up to 5 frames.
 ///
 /// [`Controller::report`] takes less than 3,000 instructions.
 #[derive(Clone, Debug)]
@@ -41,7 +49,7 @@ pub struct Controller {
     before: Option<[f64; 2]>,
     /// Predicted time of a level that was entered from below.
     predicted_ms: Option<f64>,
-    /// Factor by which a rise may exceed the ratio of costs.
+    /// Learned factor on the predicted time of a rise.
     growth: f64,
     /// Median of the first full window of the level.
     settled_ms: Option<f64>,
@@ -95,8 +103,9 @@ impl Controller {
         } else if self.count == WINDOW {
             let mut sorted = self.times;
             sorted.sort_unstable_by(f64::total_cmp);
-            let (median, high) = (sorted[WINDOW / 2], sorted[WINDOW - 4]);
-            if self.settled_ms.is_some_and(|settled| median < 0.8 * settled) {
+            let median = sorted[WINDOW / 2];
+            let high = median + SPREADS * (sorted[WINDOW - 4] - median);
+            if self.settled_ms.is_some_and(|settled| median < CHEAPER * settled) {
                 // Another scene; the learned factor was that of the old one.
                 (self.growth, self.settled_ms) = (1.0, None);
             }
@@ -112,8 +121,8 @@ impl Controller {
 
     fn fall(&mut self, ms: f64) {
         match self.predicted_ms {
-            Some(predicted) if self.age < RECENT => {
-                self.growth = (self.growth * 1.05 * ms / predicted).clamp(1.0, MAX_GROWTH);
+            Some(predicted) if self.age < TRIAL => {
+                self.growth = (self.growth * (1.05 * ms / predicted).max(MIN_GROWTH)).min(MAX_GROWTH);
             }
             _ => {}
         }
