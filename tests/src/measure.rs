@@ -15,6 +15,7 @@ pub mod half_table;
 pub mod harmonics;
 pub mod lights;
 pub mod occlusion;
+pub mod prediction;
 pub mod reflection;
 pub mod specular;
 pub mod temporal;
