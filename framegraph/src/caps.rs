@@ -44,15 +44,15 @@ pub struct Caps {
     pub max_buffer_bytes: u64,
     /// Maximum number of samples per texel: 1, 2, 4, 8 or 16. Each format also has its own set in `formats`.
     pub max_samples: u8,
-    /// Maximum number of textures that a pass samples. The limit of a shader stage, because one stage may read all.
+    /// Maximum number of textures that a shader stage samples. A raster pass has two stages: vertex and fragment.
     pub max_sampled_textures: u32,
     /// Maximum number of samplers of a shader stage. Not checked, because graphs declare no samplers.
     pub max_samplers: u32,
-    /// Maximum number of storage textures of a pass. The limit of a shader stage.
+    /// Maximum number of storage textures of a shader stage. A raster pass writes them in one stage.
     pub max_storage_textures: u32,
-    /// Maximum number of storage buffers of a pass. The limit of a shader stage.
+    /// Maximum number of storage buffers of a shader stage. A raster pass writes them in one stage.
     pub max_storage_buffers: u32,
-    /// Maximum number of uniform buffers of a pass. The limit of a shader stage.
+    /// Maximum number of uniform buffers of a shader stage.
     pub max_uniform_buffers: u32,
     /// Maximum size of a uniform binding, in bytes.
     pub max_uniform_bytes: u64,
@@ -87,7 +87,7 @@ pub struct Caps {
     /// Attachments with several layers can be memoryless too.
     pub memoryless_layers: bool,
     /// Memoryless attachments really save memory. `false` on devices without tiles that accept the flag and allocate
-    /// anyway.
+    /// anyway; attachments are then placed in the heap with [`Alias::Heap`](crate::Alias::Heap).
     pub memoryless_saves: bool,
     /// Consecutive raster passes with the same attachments can be merged into one step.
     pub merge_attachments: bool,

@@ -102,9 +102,9 @@ fn compile_keeping(
     // Subresources have no numbers if there are too many of them.
     let too_many = |e: &CompileError| matches!(e.reason, CompileReason::Shape(ShapeReason::TooManySubresources { .. }));
     if errors.more == 0 && !errors.listed.iter().any(too_many) {
-        let Scratch { measures, parts, defined, .. } = scratch;
+        let Scratch { measures, parts, defined, allowed, .. } = scratch;
         parts.number(graph, measures);
-        span!("validate" => validate::validate(graph, caps, parts, measures, defined, &mut errors));
+        span!("validate" => validate::validate(graph, caps, parts, measures, defined, allowed, &mut errors));
     }
     if let Err(errors) = errors.or(()) {
         // Restores the invariant that an empty plan belongs to an empty graph.

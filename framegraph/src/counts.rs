@@ -99,6 +99,16 @@ impl Traffic {
     }
 }
 
+impl AddAssign for Traffic {
+    /// Adds and saturates.
+    fn add_assign(&mut self, other: Self) {
+        let Self { loaded_bytes, stored_bytes, multisample_resolve_bytes } = other;
+        self.loaded_bytes = self.loaded_bytes.saturating_add(loaded_bytes);
+        self.stored_bytes = self.stored_bytes.saturating_add(stored_bytes);
+        self.multisample_resolve_bytes = self.multisample_resolve_bytes.saturating_add(multisample_resolve_bytes);
+    }
+}
+
 impl Plan {
     /// Counts over the whole plan.
     pub fn counts(&self) -> Counts {
@@ -147,10 +157,7 @@ impl Plan {
     pub fn traffic(&self, frame: [u32; 2]) -> Traffic {
         let mut sum = Traffic::default();
         for step in self.step_ids() {
-            let Traffic { loaded_bytes, stored_bytes, multisample_resolve_bytes } = self.step_traffic(step, frame);
-            sum.loaded_bytes = sum.loaded_bytes.saturating_add(loaded_bytes);
-            sum.stored_bytes = sum.stored_bytes.saturating_add(stored_bytes);
-            sum.multisample_resolve_bytes = sum.multisample_resolve_bytes.saturating_add(multisample_resolve_bytes);
+            sum += self.step_traffic(step, frame);
         }
         sum
     }
@@ -162,21 +169,16 @@ impl Plan {
     pub fn step_traffic(&self, step: StepId, frame: [u32; 2]) -> Traffic {
         let mut sum = Traffic::default();
         for attachment in self.attachments_of(step) {
-            let (loaded, stored) = self.attachment_bytes(attachment, frame);
-            sum.loaded_bytes = sum.loaded_bytes.saturating_add(loaded);
-            sum.stored_bytes = sum.stored_bytes.saturating_add(stored);
-            if attachment.role.is_resolve() {
-                sum.multisample_resolve_bytes = sum.multisample_resolve_bytes.saturating_add(stored);
-            }
+            sum += self.attachment_traffic(attachment, frame);
         }
         sum
     }
 
-    /// Bytes loaded and bytes stored by one attachment.
-    pub(crate) fn attachment_bytes(&self, attachment: &Attachment, frame: [u32; 2]) -> (u64, u64) {
+    /// Bytes moved between tile and memory by one attachment of this plan, for a frame of `frame` texels.
+    pub fn attachment_traffic(&self, attachment: &Attachment, frame: [u32; 2]) -> Traffic {
         let declared = &self.graph().resources()[attachment.resource.index()].desc;
         let (Some(texture), Some(format)) = (declared.texture(), self.format(attachment.resource)) else {
-            return (0, 0);
+            return Traffic::default();
         };
         let [w, h] = texture.mip_extent(frame, attachment.mip.into());
         let texels = u64::from(w) * u64::from(h);
@@ -192,7 +194,8 @@ impl Plan {
             loaded = loaded.saturating_add(if load == LoadOp::Load { bytes } else { 0 });
             stored = stored.saturating_add(if store == StoreOp::Store { bytes } else { 0 });
         }
-        (loaded, stored)
+        let multisample_resolve_bytes = if attachment.role.is_resolve() { stored } else { 0 };
+        Traffic { loaded_bytes: loaded, stored_bytes: stored, multisample_resolve_bytes }
     }
 
     /// Returns the reason why a pass was culled or kept.

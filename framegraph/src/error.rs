@@ -61,7 +61,7 @@ error_enum! {
             frames: Option<u8>
         } => no_history(*age, *frames);
         EmptyHistory "a history must keep at least one earlier frame", "set `frames` to 1 or more";
-        NoAlias "`may_alias` needs two different imports that are kept",
+        NoAlias "`may_alias` needs two different imports that are kept, both textures or both buffers",
             "import two textures with `Exit::Keep`, and pass a handle of each";
         HistoryTwice "two histories have this name, but the back end identifies histories by name",
             "use different names or scopes";

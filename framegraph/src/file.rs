@@ -301,7 +301,7 @@ impl<'t> GraphFile<'t> {
         let mut names = self.entries.resources.iter().filter_map(|resource| match resource {
             ResourceForm::Texture(t) => Some(&t.name),
             ResourceForm::Buffer(b) => Some(&b.name),
-            ResourceForm::Previous(_) => None,
+            ResourceForm::Previous(_) | ResourceForm::MayAlias(_) => None,
         });
         names.find(|n| n.value == name).or_else(|| {
             let plugins = self.entries.passes.iter().filter(|p| matches!(p, PassForm::Plugin(_)));

@@ -105,7 +105,7 @@ impl<'g> PassBuilder<'g> {
         let accesses = Span::new(first, accesses);
         let kind = kind.unwrap_or_else(|| inferred_kind(used));
         if tables.accesses_alias(accesses) {
-            flags.set(PassFlags::ALIASED);
+            flags.alias();
         }
         tables.passes.push(Declared { name, accesses, kind, flags, sole_color: sole, location });
     }

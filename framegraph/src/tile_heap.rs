@@ -199,12 +199,12 @@ fn candidate(plan: &Plan, id: ResourceId) -> Option<Candidate> {
 /// External bytes that a step moves for a texture: loads and stores, and what its passes read and write otherwise.
 fn traffic(plan: &Plan, step: StepId, id: ResourceId) -> u64 {
     let own = plan.attachments_of(step).iter().filter(|a| a.resource == id);
-    let moved = |(loaded, stored): (u64, u64)| loaded.saturating_add(stored);
     let resolved = plan.full_screen_resolves(step).filter(|(samples, _)| samples.resource == id);
     // Depth is resolved without stencil.
     let depth = |access: &Access| Access { range: Range { aspect: Aspect::Depth, ..access.range }, ..*access };
     let resolved = resolved.map(|(samples, _)| accessed_bytes(plan, &depth(samples))).fold(0, u64::saturating_add);
-    let attached = own.map(|a| moved(plan.attachment_bytes(a, plan.frame()))).fold(resolved, u64::saturating_add);
+    let moved = own.map(|a| plan.attachment_traffic(a, plan.frame()).total_bytes());
+    let attached = moved.fold(resolved, u64::saturating_add);
     let members = plan.passes_of(step).iter().filter(|member| !matches!(member.join, Join::Inlined | Join::Resolve));
     let read = members.flat_map(|member| {
         let is_raster = plan.graph().passes()[member.pass.index()].kind == PassKind::Raster;

@@ -250,6 +250,20 @@ impl Settings {
         }
     }
 
+    /// Returns the frame without effects that stereo views lack: those that read other pixels, several samples, fog,
+    /// blended and refractive surfaces. Shadow maps, the depth prepass, shading, the background and post-processing
+    /// remain. The plan must inline post-processing into shading
+    /// ([`Caps::inline`](framegraph::Caps::inline)).
+    #[must_use]
+    pub fn for_stereo(self) -> Self {
+        let Self { shading, shadows, size_texels, stencil, sky, post, hdr_format, stored, split_post, .. } = self;
+        let shadows = shadows.map(|shadows| ShadowSettings { contact: None, ..shadows });
+        let (prepass, fxaa) = (true, false);
+        let kept =
+            Self { shading, shadows, size_texels, stencil, sky, post, hdr_format, stored, split_post, ..Self::DEFAULT };
+        Self { prepass, fxaa, ..kept }
+    }
+
     /// Returns handles of the main view in the size that it is drawn in ([`extent`](Self::extent)), without textures.
     pub fn handles(&self) -> Handles {
         Handles::for_view(crate::gpu_scene::view::ViewId::MAIN, self.extent())

@@ -17,6 +17,7 @@ pub mod draw;
 pub mod draws;
 pub mod indirect;
 pub mod lighting;
+pub(crate) mod placements;
 pub mod prepared;
 pub mod previous_view;
 pub mod punctual;

@@ -137,6 +137,7 @@ pub use gpu_scene::view::{CameraView, ViewId, ViewSettings};
 pub use light::shading::{Quality, Shading};
 pub use quality::preset::Preset;
 pub use settings::frame_index::FrameIndex;
+pub use settings::key_value::OptionError;
 pub use settings::precision::Precision;
 pub use settings::table::SettingsTable;
 pub use stages::{Handles, Slot, Stage, StageError};

@@ -60,28 +60,18 @@ fn picture(name: &'static str) -> Stage<World> {
 
 const HDR: TextureDesc = TextureDesc::new(Extent::FRAME, Format::Rgba16Float);
 
+/// Returns the stages in the table of the module's documentation.
+fn documented() -> Vec<&'static str> {
+    let rows = include_str!("../src/frame.rs").lines().filter_map(|line| line.strip_prefix("//! | `"));
+    rows.filter_map(|row| row.split_once('`')).map(|(name, _)| name).collect()
+}
+
 #[test]
 fn names_are_the_same_whatever_the_settings_are() -> Result<(), StageError> {
-    let names = [
-        "shadow",
-        "prepass",
-        "occlusion",
-        "reflection",
-        "color",
-        "scene",
-        "transparent",
-        "resolve",
-        "taa",
-        "measure",
-        "dof",
-        "bloom",
-        "post",
-        "fxaa",
-        "upscale",
-    ];
+    let names = documented();
     let bare = Settings { shadows: None, fxaa: false, ..Settings::DEFAULT };
     for settings in [Settings::DEFAULT, FOUR, bare, Settings { scene_levels: 3, ..bare }] {
-        assert!(stages::<World>(&settings).names().eq(names));
+        assert!(names.len() > 10 && stages::<World>(&settings).names().eq(names.iter().copied()));
     }
     let (frame, _) = declare(&stages(&bare))?;
     assert_eq!(passes(frame.graph()), ["prepass", "color", "post"]);
@@ -127,8 +117,7 @@ fn the_last_picture_goes_into_the_target() -> Result<(), StageError> {
 fn names_that_are_wrong_are_said_with_those_that_are_right() {
     let mut stages = stages(&Settings::DEFAULT);
     let told = stages.insert_after("colour", radiance("glow", HDR)).map(drop).map_err(|e| e.to_string());
-    let expected = "unknown stage `colour`; use one of shadow, prepass, occlusion, reflection, color, scene, transparent, resolve, taa, measure, dof, bloom, post, fxaa, upscale";
-    assert_eq!(told, Err(expected.to_owned()));
+    assert_eq!(told, Err(format!("unknown stage `colour`; use one of {}", documented().join(", "))));
     let told = stages.replace(radiance("glow", HDR)).map(drop).map_err(|e| e.to_string());
     assert!(told.is_err_and(|told| told.contains("unknown stage `glow`")));
     let told = stages.insert_before("post", radiance("color", HDR)).map(drop);

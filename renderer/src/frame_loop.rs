@@ -303,6 +303,12 @@ impl<W: ?Sized> FrameLoop<W> {
         &mut self.flight
     }
 
+    /// Returns the parts of the last frame.
+    #[cfg(feature = "remote")]
+    pub(crate) fn parts_mut(&mut self) -> (&mut Executor, &Plan, &Frame<W>, &Imports) {
+        (&mut self.executor, &self.plan, &self.frame, &self.imports)
+    }
+
     /// Returns the executor of the frames.
     pub fn executor(&self) -> &Executor {
         &self.executor

@@ -48,7 +48,8 @@ pub use target::{InspectTarget, all_targets, find};
 pub use texels::Texels;
 
 use crate::device::gpu::Gpu;
-use crate::device::readback::{ReadbackError, read_texture};
+use crate::device::pixels::Pixels;
+use crate::device::readback::{Readback, ReadbackError, Subresource};
 use crate::execute::executor::{Executor, ExecutorOptions};
 use crate::execute::steps::{Extra, Passes};
 use crate::frame::Frame;
@@ -120,6 +121,22 @@ impl Inspector {
         imports: &Imports,
         target: InspectTarget,
     ) -> Result<Inspection, InspectError> {
+        self.start_target(executor, plan, frame, world, imports, target)?.wait(executor.gpu())
+    }
+
+    /// Submits an inspection like [`Inspector::inspect_target`], without waiting for the texels.
+    ///
+    /// # Errors
+    /// Fails like [`Inspector::inspect`].
+    pub(crate) fn start_target<W: ?Sized>(
+        &mut self,
+        executor: &Executor,
+        plan: &Plan,
+        frame: &Frame<W>,
+        world: &W,
+        imports: &Imports,
+        target: InspectTarget,
+    ) -> Result<Started, InspectError> {
         let name = || target.name.clone();
         let requested = VersionSelector::Number(target.number);
         let missing =
@@ -151,13 +168,9 @@ impl Inspector {
             .run(&inspected, &passes, &own, |commands| commands.submit(&gpu.queue, [], []))
             .map_err(|error| InspectError::Execute { name: name(), error: error.into() })?;
 
-        let unread = |error: ReadbackError| InspectError::Readback { name: name(), error: error.into() };
         let texture = self.executor.texture(&inspected, inspection.out).ok_or_else(missing)?;
-        let pixels = read_texture(&gpu, texture).map_err(unread)?;
-        let words = pixels.bytes.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect::<Vec<_>>();
-        let bits = words.as_chunks::<4>().0.to_vec();
-        let texels = Texels { format: target.format, aspect: target.aspect, size: inspection.size, bits };
-        Ok(Inspection { target, texels, plan: inspected })
+        let readback = Readback::start(&gpu, texture, Subresource::FIRST).map_err(|error| unread(&target, error))?;
+        Ok(Started { target, size: inspection.size, plan: inspected, readback })
     }
 
     /// Compiles with the options of `plan`. Heap placement is computed again, since usages differ in the inspected
@@ -168,4 +181,41 @@ impl Inspector {
         }
         compile(graph, plan.caps(), plan.options(), &mut self.scratch, inspected)
     }
+}
+
+/// Submitted inspection whose texels have not arrived.
+#[derive(Debug)]
+pub(crate) struct Started {
+    target: InspectTarget,
+    size: [u32; 2],
+    plan: Plan,
+    readback: Readback,
+}
+
+impl Started {
+    /// Waits for the texels.
+    fn wait(self, gpu: &Gpu) -> Result<Inspection, InspectError> {
+        let Self { target, size, plan, readback } = self;
+        let pixels = readback.wait(gpu).map_err(|error| unread(&target, error))?;
+        Ok(Inspection { texels: texels(&target, size, &pixels), target, plan })
+    }
+
+    /// Returns the inspection if the texels have arrived, otherwise the started one. Never waits.
+    #[cfg(feature = "remote")]
+    pub(crate) fn try_take(self, gpu: &Gpu) -> Result<Result<Inspection, Self>, InspectError> {
+        let Self { target, size, plan, readback } = self;
+        Ok(match readback.try_take(gpu).map_err(|error| unread(&target, error))? {
+            Ok(pixels) => Ok(Inspection { texels: texels(&target, size, &pixels), target, plan }),
+            Err(readback) => Err(Self { target, size, plan, readback }),
+        })
+    }
+}
+
+fn unread(target: &InspectTarget, error: ReadbackError) -> InspectError {
+    InspectError::Readback { name: target.name.clone(), error: error.into() }
+}
+
+fn texels(target: &InspectTarget, size: [u32; 2], pixels: &Pixels) -> Texels {
+    let words = pixels.bytes.as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect::<Vec<_>>();
+    Texels { format: target.format, aspect: target.aspect, size, bits: words.as_chunks::<4>().0.to_vec() }
 }

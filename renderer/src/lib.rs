@@ -106,6 +106,7 @@
 //! | [`frame`] | declared frames |
 //! | [`inspect`] | inspection of any texture of a frame, as numbers and as an image |
 //! | [`debug`] | debug modes, and a bisection that finds the mode that changes an image |
+//! | `remote` | server in an engine that viewers attach to (feature `remote`) |
 //! | `mock` | mock recorders and imports for graphs without recorders (feature `testing`) |
 //!
 //! # Features
@@ -116,6 +117,7 @@
 //! | `noop` | [`Gpu::noop`], a device that validates all calls and draws nothing, for tests without a GPU | yes |
 //! | `threads` | `Workers`, which record the steps of a frame on several threads | no |
 //! | `files` | frames from graph files, with the feature of the same name in [`framegraph`] | no |
+//! | `remote` | a server that viewers attach to, on the loopback address by default | no |
 //! | `tracing` | spans of the crate `tracing` for compilations, frames, steps and passes, with counts and bytes | no |
 //! | `testing` | module `mock` | no |
 
@@ -140,6 +142,8 @@ mod pipelines;
 mod placed;
 mod record;
 mod recorders;
+#[cfg(feature = "remote")]
+pub mod remote;
 mod resources;
 mod spans;
 #[cfg(feature = "threads")]
@@ -153,7 +157,7 @@ pub use ::wgpu;
 pub use cache::CacheCounts;
 pub use device::adapter::{AdapterRequest, describe, is_software};
 pub use device::error::{DeviceError, DeviceErrors, ErrorScopes};
-pub use device::format::{buffer_usages, format_of, texture_format, texture_usages};
+pub use device::format::{buffer_usages, format_of, texture_2d, texture_format, texture_usages};
 pub use device::gpu::Gpu;
 pub use device::open_error::OpenError;
 pub use device::pipeline_cache::PipelineCacheError;

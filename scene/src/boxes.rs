@@ -7,7 +7,7 @@ use glam::{DVec3, DVec4};
 use super::bounds::Aabb;
 
 /// Boxes per block: a multiple of every SIMD width, and small enough for the L1 cache.
-const BLOCK: usize = 64;
+pub(crate) const BLOCK: usize = 64;
 /// Half size of a padding box, which every plane rejects. Finite, since infinity times zero is NaN.
 const NOWHERE: f32 = -1e30;
 /// Relative f32 rounding error of the compared sum, about ten roundings of 2⁻²⁴ each.
@@ -135,18 +135,27 @@ impl BoxArrays {
         let planes: Vec<Half> = planes.iter().map(|plane| self.half_space(eye, *plane)).collect();
         let threads = pool.map_or(1, |pool| pool.current_num_threads() + 1).min(self.len / WORTH_A_THREAD);
         let Some(pool) = pool.filter(|_| threads > 1) else {
-            return test(self, 0..self.blocks.len(), &planes, found);
+            return test(self, 0..self.blocks.len(), &planes, found, None);
         };
         let share = self.blocks.len().div_ceil(threads);
         let mut others = vec![Vec::new(); threads - 1];
         pool.in_place_scope(|scope| {
             let planes = &planes;
             for (i, found) in (1..).zip(&mut others) {
-                scope.spawn(move |_| test(self, i * share..((i + 1) * share).min(self.blocks.len()), planes, found));
+                scope.spawn(move |_| {
+                    test(self, i * share..((i + 1) * share).min(self.blocks.len()), planes, found, None);
+                });
             }
-            test(self, 0..share, planes, found);
+            test(self, 0..share, planes, found, None);
         });
         others.iter().for_each(|other| found.extend_from_slice(other));
+    }
+
+    /// Appends the results of [`reaching`](Self::reaching) in two lists: numbers of blocks of 64 consecutive boxes that
+    /// intersect all half spaces as a whole, and numbers of boxes in other blocks. Both are ascending.
+    pub(crate) fn reaching_blocks(&self, eye: DVec3, planes: &[DVec4], blocks: &mut Vec<u32>, boxes: &mut Vec<u32>) {
+        let planes: Vec<Half> = planes.iter().map(|plane| self.half_space(eye, *plane)).collect();
+        test(self, 0..self.blocks.len(), &planes, boxes, Some(blocks));
     }
 
     fn half_space(&self, eye: DVec3, plane: DVec4) -> Half {
@@ -160,20 +169,33 @@ impl BoxArrays {
 /// Version of [`test_portable`] that is also compiled for AVX2, which tests eight boxes at once; selected at run time.
 /// Products and sums are not fused, so both versions return equal results.
 #[multiversion::multiversion(targets("x86_64+avx2"))]
-fn test(arrays: &BoxArrays, blocks: Range<usize>, planes: &[Half], found: &mut Vec<u32>) {
-    test_portable(arrays, blocks, planes, found);
+fn test(arrays: &BoxArrays, blocks: Range<usize>, planes: &[Half], found: &mut Vec<u32>, whole: Option<&mut Vec<u32>>) {
+    test_portable(arrays, blocks, planes, found, whole);
 }
 
-/// Appends the numbers of the boxes of `blocks` that intersect all half spaces.
+/// Appends the numbers of the boxes of `blocks` that intersect all half spaces. Appends blocks that do as a whole to
+/// `whole` instead if it exists.
 #[inline(always)]
-fn test_portable(arrays: &BoxArrays, blocks: Range<usize>, planes: &[Half], found: &mut Vec<u32>) {
-    found.reserve(blocks.len() * BLOCK);
+fn test_portable(
+    arrays: &BoxArrays,
+    blocks: Range<usize>,
+    planes: &[Half],
+    found: &mut Vec<u32>,
+    mut whole: Option<&mut Vec<u32>>,
+) {
+    if whole.is_none() {
+        found.reserve(blocks.len() * BLOCK);
+    }
     let [x, y, z] = arrays.middle.each_ref().map(|axis| axis.as_chunks::<BLOCK>().0);
     let [a, b, c] = arrays.half.each_ref().map(|axis| axis.as_chunks::<BLOCK>().0);
     for block in blocks {
         match arrays.blocks[block].seen(planes) {
             Seen::None => continue,
             Seen::All => {
+                if let Some(whole) = &mut whole {
+                    whole.push(block as u32);
+                    continue;
+                }
                 found.extend((block * BLOCK) as u32..((block + 1) * BLOCK) as u32);
                 continue;
             }
@@ -289,8 +311,8 @@ mod tests {
             .map(|plane| arrays.half_space(DVec3::X, plane))
             .into();
         let [mut own, mut portable] = [Vec::new(), Vec::new()];
-        test(&arrays, 0..arrays.blocks.len(), &planes, &mut own);
-        test_portable(&arrays, 0..arrays.blocks.len(), &planes, &mut portable);
+        test(&arrays, 0..arrays.blocks.len(), &planes, &mut own, None);
+        test_portable(&arrays, 0..arrays.blocks.len(), &planes, &mut portable, None);
         assert!(own == portable && own.len() > 100 && own.len() < boxes.len() - 100, "{}", own.len());
     }
 
@@ -341,6 +363,11 @@ mod tests {
             let frustum = Frustum::of_camera(&camera, 1.5);
             let (mut one, mut other) = (Vec::new(), Vec::new());
             apart.reaching(eye, frustum.planes(), None, &mut one);
+            let (mut blocks, mut boxes) = (Vec::new(), Vec::new());
+            apart.reaching_blocks(eye, frustum.planes(), &mut blocks, &mut boxes);
+            boxes.extend(blocks.iter().flat_map(|block| block * 64..(block + 1) * 64));
+            boxes.sort_unstable();
+            assert_eq!(boxes, one);
             together.reaching(eye, frustum.planes(), None, &mut other);
             other.iter_mut().for_each(|i| *i = (*i as usize * stride % count) as u32);
             other.sort_unstable();

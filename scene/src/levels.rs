@@ -120,6 +120,9 @@ impl InstanceLevels {
     /// Limits the levels of the instances in `list` to those with an error of at most `most_m` of the instance, in
     /// meters of world space. Level 0 is the mesh itself.
     pub fn limit<'a>(&self, levels: &mut [u8], list: impl IntoIterator<Item = &'a u32>, most_m: impl Fn(u32) -> f64) {
+        if self.is_empty() {
+            return;
+        }
         for number in list {
             let (Some(&(mesh, scale)), Some(level)) = (self.of.get(*number as usize), levels.get_mut(*number as usize))
             else {

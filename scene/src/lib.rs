@@ -79,6 +79,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod batch;
+mod blocks;
 pub mod bounds;
 pub mod boxes;
 pub mod builtin;

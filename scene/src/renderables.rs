@@ -2,11 +2,12 @@
 
 use std::borrow::Cow;
 
-use glam::{DMat4, DVec3};
+use glam::{DVec3, DVec4};
 
 use super::batch::Groups;
+use super::blocks::{numbers_of, runs_of};
 use super::bounds::Aabb;
-use super::boxes::BoxArrays;
+use super::boxes::{BLOCK, BoxArrays};
 use super::draw_options::DrawOptions;
 use super::instance::Instance;
 use super::levels::InstanceLevels;
@@ -35,8 +36,8 @@ impl DrawKind {
     }
 }
 
-/// Number of consecutive instances per bounding box.
-const BLOCK: usize = 64;
+/// Maximum mean surface of blocks for sorting by block, relative to that of the scene. Random order has about one.
+const MAX_BLOCK_SURFACE: f64 = 0.25;
 
 /// Instances of a scene in the form used by culling, sorting and drawing; see the [module](self).
 ///
@@ -48,11 +49,16 @@ pub struct Renderables {
     whole: Aabb,
     /// Bounding box of each [`BLOCK`] of instances.
     blocks: Vec<Aabb>,
+    /// Bounding box of the casters with thickness in each block.
+    solid_blocks: Vec<Aabb>,
+    /// True if blocks are much smaller than the scene.
+    has_compact_blocks: bool,
     boxes: BoxArrays,
-    origins: Vec<DVec3>,
-    stamps: Vec<u64>,
     kinds: Vec<DrawKind>,
+    /// Kind of all instances, if they have one in common.
+    common_kind: Option<DrawKind>,
     casts: Vec<bool>,
+    all_cast: bool,
     layers: Vec<u8>,
     /// Layers and light channels that all instances have in common.
     common_layers: u8,
@@ -64,6 +70,7 @@ pub struct Renderables {
     solid_casters: Aabb,
     surfaces: Groups,
     depths: Groups,
+    has_equal_groups: bool,
     levels: InstanceLevels,
 }
 
@@ -109,8 +116,6 @@ impl Renderables {
         let bounds: Vec<Aabb> = instances.iter().map(|instance| instance.bounds).collect();
         let mut own = Self {
             boxes: BoxArrays::new(&bounds),
-            origins: instances.iter().map(|instance| instance.world_from_model.w_axis.truncate()).collect(),
-            stamps: instances.iter().map(|instance| stamp(&instance.world_from_model)).collect(),
             casts: keys
                 .iter()
                 .zip(&kinds)
@@ -128,9 +133,12 @@ impl Renderables {
             depths: Groups::new(&depth_keys),
             levels: InstanceLevels::new(scene),
             bounds,
+            common_kind: kinds.first().copied().filter(|first| kinds.iter().all(|kind| kind == first)),
             kinds,
             ..Self::default()
         };
+        own.has_equal_groups = own.surfaces == own.depths;
+        own.all_cast = own.casts.iter().all(|casts| *casts);
         own.sum_up();
         own
     }
@@ -149,12 +157,16 @@ impl Renderables {
         for &number in moved {
             let instance = &scene.instances[number];
             self.bounds[number] = instance.bounds;
-            self.origins[number] = instance.world_from_model.w_axis.truncate();
-            self.stamps[number] = stamp(&instance.world_from_model);
             self.levels.update(scene, number);
         }
         self.boxes.replace(moved.iter().map(|number| (*number, &scene.instances[*number].bounds)));
-        self.sum_up();
+        let mut touched: Vec<usize> = moved.iter().map(|number| number / BLOCK).collect();
+        touched.sort_unstable();
+        touched.dedup();
+        self.flat.retain(|(number, _)| touched.binary_search(&(*number as usize / BLOCK)).is_err());
+        touched.into_iter().for_each(|block| self.sum_up_block(block));
+        self.flat.sort_unstable();
+        self.sum_up_blocks();
     }
 
     /// Returns the instances as seen by a view with these visible layers: hidden ones have empty bounds and cast no
@@ -169,6 +181,7 @@ impl Renderables {
         for (number, _) in self.layers.iter().enumerate().filter(|(_, layers)| hides(layers)) {
             (own.bounds[number], own.casts[number]) = (Aabb::EMPTY, false);
         }
+        own.all_cast = false;
         own.boxes = BoxArrays::new(&own.bounds);
         own.sum_up();
         Cow::Owned(own)
@@ -176,18 +189,35 @@ impl Renderables {
 
     /// Computes the properties of all boxes together.
     fn sum_up(&mut self) {
-        self.blocks.clear();
-        self.blocks.extend(self.bounds.chunks(BLOCK).map(around));
-        self.whole = around(&self.blocks);
+        let count = self.bounds.len().div_ceil(BLOCK);
+        (self.blocks, self.solid_blocks) = (vec![Aabb::EMPTY; count], vec![Aabb::EMPTY; count]);
         self.flat.clear();
-        self.solid_casters = Aabb::EMPTY;
-        for (number, bounds) in (0..).zip(&self.bounds).filter(|(number, _)| self.casts[*number as usize]) {
-            let half = bounds.half_extent();
-            match (0..3).find(|axis| half[*axis] <= 1e-6 * half.max_element()) {
-                Some(axis) => self.flat.push((number, axis)),
-                None => self.solid_casters = self.solid_casters.union(*bounds),
+        (0..count).for_each(|block| self.sum_up_block(block));
+        self.sum_up_blocks();
+    }
+
+    /// Computes the properties of a block of boxes, and appends its flat casters.
+    fn sum_up_block(&mut self, block: usize) {
+        let range = block * BLOCK..self.bounds.len().min((block + 1) * BLOCK);
+        self.blocks[block] = around(&self.bounds[range.clone()]);
+        let mut solid = Aabb::EMPTY;
+        for number in range.filter(|number| self.casts[*number]) {
+            let half = self.bounds[number].half_extent();
+            let largest = half.max_element();
+            match (0..3).find(|axis| half[*axis] <= 1e-6 * largest) {
+                Some(axis) => self.flat.push((number as u32, axis)),
+                None => solid = solid.union(self.bounds[number]),
             }
         }
+        self.solid_blocks[block] = solid;
+    }
+
+    /// Computes the properties of all blocks together.
+    fn sum_up_blocks(&mut self) {
+        self.whole = around(&self.blocks);
+        self.solid_casters = around(&self.solid_blocks);
+        let mean_surface = self.blocks.iter().map(surface).sum::<f64>() / self.blocks.len().max(1) as f64;
+        self.has_compact_blocks = mean_surface < MAX_BLOCK_SURFACE * surface(&self.whole);
     }
 
     /// Returns the bounding box of each instance, in world space.
@@ -214,28 +244,55 @@ impl Renderables {
         firsts.zip(self.bounds.chunks(BLOCK).zip(&self.blocks)).map(|(first, (row, around))| (first, row, around))
     }
 
+    /// Returns the boxes of the instances that intersect all half spaces ([`BoxArrays::reaching`], with the eye at
+    /// zero). More than `max_boxes` are replaced by their common bounding box.
+    #[must_use]
+    pub fn boxes_reaching(&self, planes: &[DVec4], max_boxes: usize) -> Vec<Aabb> {
+        let (mut whole, mut others) = (Vec::new(), Vec::new());
+        self.boxes.reaching_blocks(DVec3::ZERO, planes, &mut whole, &mut others);
+        let of_others = others.iter().map(|number| self.bounds[*number as usize]);
+        if whole.len() * BLOCK + others.len() > max_boxes {
+            let of_blocks = whole.iter().map(|block| self.blocks[*block as usize]);
+            return vec![of_blocks.chain(of_others).fold(Aabb::EMPTY, Aabb::union)];
+        }
+        let mut numbers: Vec<u32> = whole.iter().flat_map(|block| numbers_of(*block)).chain(others.clone()).collect();
+        numbers.sort_unstable();
+        numbers.iter().map(|number| self.bounds[*number as usize]).collect()
+    }
+
     /// Returns the bounding box of these instances, whose numbers are ascending.
     ///
     /// # Panics
     /// If an instance does not exist.
     #[must_use]
-    pub fn around(&self, mut numbers: &[u32]) -> Aabb {
-        let mut all = Aabb::EMPTY;
-        while let [first, rest @ ..] = numbers {
-            let at = *first as usize;
-            let whole = at.is_multiple_of(BLOCK) && numbers.get(BLOCK - 1) == Some(&(first + BLOCK as u32 - 1));
-            (all, numbers) = match whole {
-                true => (all.union(self.blocks[at / BLOCK]), &numbers[BLOCK..]),
-                false => (all.union(self.bounds[at]), rest),
-            };
-        }
-        all
+    pub fn around(&self, numbers: &[u32]) -> Aabb {
+        runs_of(numbers).fold(Aabb::EMPTY, |all, run| match run.len() {
+            BLOCK => all.union(self.blocks[run[0] as usize / BLOCK]),
+            _ => run.iter().fold(all, |all, number| all.union(self.bounds[*number as usize])),
+        })
     }
 
-    /// Returns the origin of each instance's mesh in meters, in world space.
+    /// Returns the bounding boxes of blocks if instances may be sorted by block: the blocks are much smaller than the
+    /// scene.
+    pub(crate) fn compact_blocks(&self) -> Option<&[Aabb]> {
+        self.has_compact_blocks.then_some(&self.blocks)
+    }
+
+    /// Returns the kind of all instances, if they have one in common.
+    pub(crate) fn common_kind(&self) -> Option<DrawKind> {
+        self.common_kind
+    }
+
+    /// Returns true if all instances are [cast](Self::casts).
     #[must_use]
-    pub fn origins(&self) -> &[DVec3] {
-        &self.origins
+    pub fn all_cast(&self) -> bool {
+        self.all_cast
+    }
+
+    /// Returns true if [`surfaces`](Self::surfaces) and [`depths`](Self::depths) are equal.
+    #[must_use]
+    pub fn has_equal_groups(&self) -> bool {
+        self.has_equal_groups
     }
 
     /// Returns the kind of drawing of each instance.
@@ -260,13 +317,6 @@ impl Renderables {
     /// Returns the draw order of each instance; empty if all are ordered by distance alone.
     pub(crate) fn orders(&self) -> &[DrawOrder] {
         &self.orders
-    }
-
-    /// Returns a hash of each instance's transform: equal transforms have equal hashes, and different ones collide with
-    /// probability 2⁻⁶⁴.
-    #[must_use]
-    pub fn stamps(&self) -> &[u64] {
-        &self.stamps
     }
 
     /// Returns the shadow casters without thickness, each with the axis of zero extent.
@@ -298,6 +348,12 @@ impl Renderables {
     pub fn levels(&self) -> &InstanceLevels {
         &self.levels
     }
+}
+
+/// Returns a measure of the surface of a box, zero for an empty one.
+fn surface(bounds: &Aabb) -> f64 {
+    let half = bounds.half_extent();
+    half.x * half.y + half.y * half.z + half.z * half.x
 }
 
 fn around(boxes: &[Aabb]) -> Aabb {
@@ -337,15 +393,6 @@ fn kind_of(scene: &Scene, instance: &Instance) -> DrawKind {
         AlphaMode::Opaque => DrawKind::Opaque,
         AlphaMode::Mask { .. } => DrawKind::Mask,
     }
-}
-
-/// Returns a 64-bit hash of a matrix: numbers are multiplied and rotated, as in Fx and wyhash.
-fn stamp(matrix: &DMat4) -> u64 {
-    let mix = |state: u64, value: f64| {
-        let product = u128::from(state ^ value.to_bits()) * 0x9e37_79b9_7f4a_7c15;
-        (product >> 64) as u64 ^ product as u64
-    };
-    matrix.to_cols_array().into_iter().fold(0x2545_f491_4f6c_dd1d, mix)
 }
 
 #[cfg(test)]

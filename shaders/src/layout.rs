@@ -60,27 +60,24 @@ mod tests;
 mod tone;
 mod vertex;
 
-pub use bloom::{BloomMixUniforms, BloomUniforms, FlareUniforms};
-pub use dof::DofUniforms;
-pub use fog::FogUniforms;
-pub use frame::FrameUniforms;
-pub use froxel::FroxelUniforms;
-pub use grading::GradingUniforms;
-pub use grading_settings::Grading;
-pub use ibl::{IBL_KERNEL_ROWS, IblKernelUniforms, IblUniforms};
-pub use light::{LightError, LightUniforms, Punctual};
+pub use bloom::*;
+pub use dof::*;
+pub use fog::*;
+pub use frame::*;
+pub use froxel::*;
+pub use grading::*;
+pub use grading_settings::*;
+pub use ibl::*;
+pub use light::*;
 pub use material::*;
-pub use motion::MotionUniforms;
-pub use object::{ObjectAttributes, ObjectUniforms};
-pub use occlusion::{BilateralUniforms, ConeUniforms, OcclusionUniforms, Projection};
-pub use post::{EdgeFade, EdgeFadeUniforms, EncodingUniforms, ExposureUniforms, FxaaUniforms, VignetteUniforms};
-pub use reflection::ReflectionUniforms;
-pub use shadow::{ShadowBlurUniforms, ShadowMapUniforms, ShadowUniforms, ShadowViewUniforms};
-pub use sharpen::SharpenUniforms;
-pub use sky::SkyUniforms;
-pub use taa::TaaUniforms;
-pub use tone::{GenericCurve, ToneMap};
-pub use vertex::{
-    OBJECT_ATTRIBUTES, STREAM_ATTRIBUTES, STREAM_EARLIER, STREAM_INSTANCE, STREAM_POSITION, VERTEX_ATTRIBUTES,
-    VertexAttribute, VertexAttributes, VertexFormat, VertexPosition, stream_stride_bytes,
-};
+pub use motion::*;
+pub use object::*;
+pub use occlusion::*;
+pub use post::*;
+pub use reflection::*;
+pub use shadow::*;
+pub use sharpen::*;
+pub use sky::*;
+pub use taa::*;
+pub use tone::*;
+pub use vertex::*;

@@ -3,10 +3,10 @@
 use crate::executors;
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
 use framegraph_passes::program::Programs;
-use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture, texture_2d};
 use std::error::Error;
 use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use wgpu::{TextureFormat, TextureUsages};
 
 /// Returns the output of a pass for a picture of four bytes per texel, left to right and top to bottom.
 ///
@@ -27,16 +27,7 @@ pub fn filtered(
     compile(frame.graph(), &gpu.caps(), &Options::for_frame(width, height), &mut Scratch::new(), &mut plan)?;
     let texture = gpu.device.create_texture_with_data(
         &gpu.queue,
-        &TextureDescriptor {
-            label: Some("given"),
-            size: Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: TextureFormat::Rgba8Unorm,
-            usage: TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        },
+        &texture_2d("given", [width, height], TextureFormat::Rgba8Unorm, TextureUsages::TEXTURE_BINDING),
         TextureDataOrder::LayerMajor,
         codes,
     );

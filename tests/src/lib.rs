@@ -37,6 +37,8 @@ mod guide {
     pub struct FilesAndPlugins;
     #[doc = include_str!("../../docs/guide/counts.md")]
     pub struct Counts;
+    #[doc = include_str!("../../docs/guide/plans-in-ci.md")]
+    pub struct PlansInCi;
     #[doc = include_str!("../../docs/guide/standard-frame.md")]
     pub struct StandardFrame;
     #[doc = include_str!("../../docs/guide/migrating.md")]

@@ -5,9 +5,7 @@ use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::light::ibl::cache::Cache;
 use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::light::shading::LightSettings;
-use framegraph_passes::{
-    CameraView, LightSearch, Lighting, PreparedScene, Settings, StageError, ViewId, World, standard,
-};
+use framegraph_passes::{CameraView, Lighting, PreparedScene, Settings, StageError, ViewId, World, standard};
 use framegraph_scene::{Environment, Scene, progress};
 use framegraph_wgpu::{FrameLoop, Gpu};
 use glam::{DVec3, Vec3};
@@ -105,11 +103,8 @@ fn view(
         camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
         size_px,
         ev100: 12.0,
-        environment_intensity: 1.0,
         shadows: settings.shadows,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     CameraView::prepared(scene, prepared, &lighting.image, &Background::Constant(Vec3::ONE), &seen)
 }

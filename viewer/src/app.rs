@@ -1,26 +1,26 @@
 //! The application: panes in tiles that show one [`Session`].
 
+mod accuracy;
+#[cfg(feature = "window")]
+mod attaching;
 #[cfg(feature = "window")]
 mod chosen;
 #[cfg(feature = "window")]
 pub mod dialog;
-mod drawings;
 #[cfg(feature = "window")]
 mod export;
 mod panes;
 mod shortcuts;
-mod strip;
 
 pub use crate::session::{Role, Session};
 pub use panes::Pane;
 pub use shortcuts::SHORTCUTS;
 
 use crate::drawing::Item;
-use crate::panel::{self, Canvas, List};
+use crate::panel::{self, List, Views};
 use crate::view::{self, View};
 use egui::{Context, Panel, RichText, Ui};
 use egui_tiles::Tree;
-use std::collections::BTreeMap;
 
 /// The application without its window, which an engine can embed in its own egui UI.
 pub struct Viewer {
@@ -30,19 +30,21 @@ pub struct Viewer {
     tiles: Tree<Pane>,
     /// Search pane.
     list: List,
-    /// Pan and zoom of each view.
-    canvases: BTreeMap<View, Canvas>,
-    /// Tables of the timeline and of memory.
-    grids: panes::Grids,
-    /// Cached drawings of the views.
-    drawings: drawings::Drawings,
+    /// Views of plans.
+    views: Views,
     /// Document to which zoom and search belong.
     document: u64,
-    /// Comparison picture of an accuracy choice.
-    strip: strip::Strip,
+    /// Accuracy view.
+    accuracy: accuracy::AccuracyPane,
     /// Live frame.
     #[cfg(feature = "window")]
     pub live: Option<crate::live::Live>,
+    /// Attached engine.
+    #[cfg(feature = "window")]
+    pub attached: Option<crate::attached::Attached>,
+    /// Typed address of an engine.
+    #[cfg(feature = "window")]
+    address: String,
     /// File dialog.
     #[cfg(feature = "window")]
     dialog: dialog::Dialog,
@@ -66,13 +68,15 @@ impl Viewer {
             session,
             tiles: panes::arranged(false),
             list: List::default(),
-            canvases: BTreeMap::new(),
-            grids: panes::Grids::default(),
-            drawings: drawings::Drawings::default(),
+            views: Views::default(),
             document: 0,
-            strip: strip::Strip::default(),
+            accuracy: accuracy::AccuracyPane::default(),
             #[cfg(feature = "window")]
             live: None,
+            #[cfg(feature = "window")]
+            attached: None,
+            #[cfg(feature = "window")]
+            address: framegraph_wgpu::remote::DEFAULT_ADDRESS.into(),
             #[cfg(feature = "window")]
             dialog: dialog::Dialog::default(),
             #[cfg(feature = "window")]
@@ -107,6 +111,10 @@ impl Viewer {
         if let Some(live) = &mut self.live {
             live.tick(&mut self.session, ui.input(|i| i.stable_dt));
         }
+        #[cfg(feature = "window")]
+        if let Some(attached) = &mut self.attached {
+            attached.poll(&mut self.session);
+        }
         self.refresh();
         self.dropped(ui.ctx());
         #[cfg(feature = "window")]
@@ -118,16 +126,16 @@ impl Viewer {
         if !self.session.messages.is_empty() || self.session.notice.is_some() {
             Panel::top("messages").show(ui, |ui| self.messages(ui));
         }
-        let Self { session, tiles, list, canvases, grids, drawings, strip, .. } = self;
+        let Self { session, tiles, list, views, accuracy, .. } = self;
         let mut behavior = panes::Panes {
             session,
             list,
-            canvases,
-            grids,
-            drawings,
-            strip,
+            views,
+            accuracy,
             #[cfg(feature = "window")]
             live: &mut self.live,
+            #[cfg(feature = "window")]
+            attached: &mut self.attached,
             #[cfg(feature = "window")]
             typed: &mut self.typed.0,
         };
@@ -158,10 +166,7 @@ impl Viewer {
 
     /// Returns the screen position of an item in a view; `None` if it is not visible.
     pub fn place_of(&self, view: View, item: Item) -> Option<egui::Pos2> {
-        if let Some(grid) = self.grids.of(view) {
-            return grid.place_of(item);
-        }
-        self.canvases.get(&view)?.place_of(self.drawings.existing(view)?, item)
+        self.views.place_of(view, item)
     }
 
     /// Returns the arrangement of the panes as text for [`Viewer::arrange`].
@@ -183,14 +188,13 @@ impl Viewer {
         }
     }
 
-    /// Drops outdated drawings, and after another file was opened, zoom and search.
+    /// Resets zoom and search after another file was opened.
     fn refresh(&mut self) {
         if std::mem::replace(&mut self.document, self.session.documents()) != self.session.documents() {
-            self.canvases.clear();
-            self.grids = panes::Grids::default();
+            self.views.reset();
+            self.accuracy.reset();
             self.list.search.clear();
         }
-        self.drawings.refresh(&self.session);
     }
 
     /// Executes the action of a shortcut.
@@ -200,7 +204,7 @@ impl Viewer {
                 self.turn_to(Pane::List);
                 self.list.focus = true;
             }
-            shortcuts::Action::View(view) => self.turn_to(Pane::View(view)),
+            shortcuts::Action::Pane(pane) => self.turn_to(pane),
             shortcuts::Action::Help => self.help = !self.help,
             #[cfg(feature = "window")]
             shortcuts::Action::Undo | shortcuts::Action::Redo => {
@@ -236,6 +240,11 @@ impl Viewer {
             && live.open(path, &mut self.session)
         {
             return;
+        }
+        // The next plan of an engine would replace the file.
+        #[cfg(feature = "window")]
+        if role == Role::Shown {
+            self.detach();
         }
         self.session.open(path, role);
     }
@@ -275,6 +284,8 @@ impl Viewer {
             }
             #[cfg(feature = "window")]
             self.export_menu(ui);
+            #[cfg(feature = "window")]
+            self.attach_menu(ui);
             ui.separator();
             if let Some(doing) = self.session.doing().map(str::to_owned) {
                 match self.session.progress() {

@@ -5,8 +5,12 @@ use program::clap::{self, ArgAction};
 use program::cli::{self, Parsed, argument, flag, option};
 use std::ffi::OsString;
 use std::path::PathBuf;
+use viewer::app::Pane;
 use viewer::drawing::Theme;
 use viewer::view::View;
+
+/// Default view of a picture.
+pub const GRAPH: Pane = Pane::View(View::Graph);
 
 const ABOUT: &str = "Shows the passes, decisions and costs of a frame.";
 
@@ -42,6 +46,12 @@ fn command() -> clap::Command {
              (spheres)",
         )
         .conflicts_with_all(["headless", "standard"]),
+        option(
+            "attach",
+            "HOST:PORT",
+            "Show plan, times and textures of a running engine (framegraph_wgpu::remote; 127.0.0.1:9870)",
+        )
+        .conflicts_with_all(["FILE", "plan", "live", "standard"]),
         option("settings", "PRESET", "Initial settings with --live: a preset or a FILE.ron (high)"),
         option(
             "environment",
@@ -62,7 +72,7 @@ fn command() -> clap::Command {
         option(
             "view",
             "VIEW",
-            format!("{}; default: the last one, graph without a window", View::ALL.map(View::word).join(", ")),
+            format!("{}; default: the last one, graph without a window", Pane::drawn().map(Pane::word).collect::<Vec<_>>().join(", ")),
         ),
         option("theme", "THEME", "light or dark; default: the last one, else that of the desktop; light without a window"),
         option("scale", "X", "Pixels per point, 0.5 to 4 (1)"),
@@ -76,8 +86,11 @@ fn command() -> clap::Command {
             "Draw continuously, close the window after N or N + 1 frames, and print their number",
         )
         .conflicts_with_all(["headless", "measure"]),
-        flag("measure", "Print the cost of the panels on this machine, without a window")
-            .conflicts_with_all(["FILE", "headless", "live", "plan", "standard"]),
+        flag(
+            "measure",
+            "Print the cost of the panels on this machine, without a window, also while the scene FILE loads (spheres)",
+        )
+        .conflicts_with_all(["headless", "live", "plan", "standard"]),
     ])
 }
 
@@ -90,6 +103,8 @@ pub struct Args {
     pub standard: Option<String>,
     /// Draws the standard frame; the file is a scene.
     pub live: bool,
+    /// Address of the engine to attach to.
+    pub attach: Option<String>,
     /// Initial settings of the live frame.
     pub settings: Option<String>,
     /// Prints the cost of the panels.
@@ -111,7 +126,7 @@ pub struct Args {
     /// Name of the selected pass or resource.
     pub select: Option<String>,
     /// View in front; `None` for the remembered one, without a window the graph.
-    pub view: Option<View>,
+    pub view: Option<Pane>,
     /// Theme; `None` follows the desktop.
     pub theme: Option<Theme>,
     /// Pixels per point.
@@ -164,6 +179,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
         standard: None,
         live: false,
         measure: false,
+        attach: None,
         settings: None,
         environment: None,
         against: None,
@@ -193,6 +209,7 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
             "environment" => out.environment = Some(item.raw().into()),
             "trace" => out.trace = Some(item.raw().into()),
             "out" => out.out = Some(item.raw().into()),
+            "attach" => out.attach = Some(item.text()?),
             "caps" => out.caps = item.text()?,
             "select" => out.select = Some(item.text()?),
             "standard" => out.standard = Some(item.text()?),
@@ -204,8 +221,8 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
             "set" => out.features.push(item.parse("FEATURE=on or FEATURE=off", switch)?),
             "order" => out.order = item.parse("declared or optimized", order)?,
             "view" => {
-                let views = format!("one of {}", View::ALL.map(View::word).join(", "));
-                out.view = Some(item.parse(&views, |text| View::ALL.into_iter().find(|view| view.word() == text))?);
+                let views = format!("one of {}", Pane::drawn().map(Pane::word).collect::<Vec<_>>().join(", "));
+                out.view = Some(item.parse(&views, |text| Pane::drawn().find(|pane| pane.word() == text))?);
             }
             "theme" => out.theme = Some(item.parse("light or dark", theme)?),
             "scale" => {
@@ -215,7 +232,8 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
             _ => out.frames = Some(item.parse("a whole number of frames", |text| text.parse().ok())?),
         }
     }
-    if headless && out.file.is_none() && out.standard.is_none() && out.view.unwrap_or(View::Graph).is_of_a_plan() {
+    let has_plan = out.file.is_some() || out.standard.is_some() || out.attach.is_some();
+    if headless && !has_plan && out.view.unwrap_or(GRAPH).is_of_a_plan() {
         return Err("--headless: requires a file; add --plan FILE".into());
     }
     Ok(Command::Show(Box::new(out)))
@@ -267,7 +285,7 @@ mod tests {
                     --whole";
         let Ok(Command::Show(args)) = parsed(line) else { panic!("the line is sound") };
         assert_eq!((args.file, args.against), (Some("a.json".into()), Some("b.ron".into())));
-        assert_eq!((args.view, args.theme, args.scale), (Some(View::Memory), Some(Theme::Dark), 2.0));
+        assert_eq!((args.view, args.theme, args.scale), (Some(Pane::View(View::Memory)), Some(Theme::Dark), 2.0));
         assert_eq!((args.size, args.picture, args.whole), (Some([64, 32]), Some([640, 360]), true));
         assert_eq!((args.features, args.order), (vec![("msaa".into(), true)], Order::Optimized));
         assert!(matches!(parsed("--help --capz"), Ok(Command::Help(_))));
@@ -279,9 +297,10 @@ mod tests {
             ("a.ron b.ron", "b.ron: unexpected argument"),
             ("a.ron --plan b.ron", "cannot be used with"),
             ("--live --standard low", "--live"),
+            ("a.ron --attach 127.0.0.1:1", "--attach"),
             ("--settings low", "--settings: requires --live"),
             ("--frames 3 --headless --plan a.json --out a.png", "--frames: cannot be used with"),
-            ("a.json --measure", "cannot be used with"),
+            ("--live --measure", "cannot be used with"),
             ("a.json --whole", "requires --headless"),
             ("a.json --picture 8x8", "requires --headless"),
             ("--capz tiler", "--capz: unknown option; did you mean `--caps`?"),

@@ -3,7 +3,7 @@
 use crate::plan_data::PlanData;
 use crate::what_if::{Planner, WhatIf};
 use framegraph::file::{GraphFile, Included};
-use framegraph::{Graph, Options, Plan, Scratch};
+use framegraph::{Caps, Graph, Options, Plan, Scratch};
 use program::input::{MAX_TEXT_BYTES, in_utf8};
 use std::path::{Path, PathBuf};
 
@@ -32,6 +32,11 @@ impl GraphSource {
         let features = file.features().to_vec();
         drop(file);
         Ok(Self { path, text, included, features })
+    }
+
+    /// Takes the text of a graph that includes no files and has no features, such as one from an engine.
+    pub fn of_text(name: String, text: String) -> Self {
+        Self { path: name, text, included: Included::default(), features: Vec::new() }
     }
 
     /// Returns the file and its includes, for watching.
@@ -70,6 +75,14 @@ impl Planner for GraphSource {
         data.declared_at = data.form.passes.iter().map(|pass| self.place_of(&pass.name)).collect();
         Ok(data)
     }
+}
+
+/// Reads a device file.
+///
+/// # Errors
+/// One line: the file cannot be read, or contains an error.
+pub fn read_device(path: &Path) -> Result<Caps, String> {
+    framegraph::file::caps(&path.display().to_string(), &text_of(path)?).map_err(|e| e.to_string())
 }
 
 /// Reads a text file.

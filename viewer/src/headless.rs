@@ -1,19 +1,16 @@
 //! Pictures without a window.
 
 use crate::args::Args;
+use crate::args::GRAPH;
 use crate::{Failure, first, has_extension, opened, selected};
 use program::outputs::Outputs;
 use std::path::Path;
-use viewer::app::{Pane, Session, Viewer};
+use viewer::app::{Session, Viewer};
 use viewer::drawing::svg;
 use viewer::offscreen::{Offscreen, own_size_px};
-use viewer::plan_data::PlanData;
-use viewer::view::{View, drawing};
 
 /// Default size of the whole application in pixels.
 const WHOLE: [u32; 2] = [1280, 720];
-/// Characters per line in the inspector.
-const LETTERS: usize = 110;
 
 /// Writes the picture.
 ///
@@ -45,9 +42,7 @@ pub fn run(args: &Args, out: &Path) -> Result<(), Failure> {
 
 /// Returns the drawing of the requested view.
 fn picture(args: &Args, session: &Session) -> viewer::drawing::Drawing {
-    let empty = PlanData::default();
-    let plan = session.plan.as_deref().unwrap_or(&empty);
-    drawing(args.view.unwrap_or(View::Graph), plan, session.context(), LETTERS)
+    args.view.unwrap_or(GRAPH).drawing(session).unwrap_or_default()
 }
 
 fn of_view(args: &Args, session: &Session) -> String {
@@ -60,7 +55,7 @@ fn png(args: &Args, session: Session) -> Result<Vec<u8>, Failure> {
     let (size, rgba) = if args.whole {
         let size = args.picture.unwrap_or(WHOLE);
         let mut viewer = Viewer::new(session);
-        viewer.turn_to(Pane::View(args.view.unwrap_or(View::Graph)));
+        viewer.turn_to(args.view.unwrap_or(GRAPH));
         let item = viewer.session.selected;
         let rgba = screen.picture(size, args.scale, theme, |ui| {
             viewer.show(ui);
@@ -70,7 +65,7 @@ fn png(args: &Args, session: Session) -> Result<Vec<u8>, Failure> {
     } else {
         let drawing = picture(args, &session);
         let size = args.picture.unwrap_or_else(|| own_size_px(&drawing, args.scale));
-        (size, screen.drawing(&drawing, size, args.scale, theme, &session.lit()))
+        (size, screen.drawing(&drawing, size, args.scale, theme, &session.data().lit()))
     };
     let mut bytes = Vec::new();
     framegraph_scene::picture::encode_png(&mut bytes, size, &rgba.map_err(Failure::Device)?)

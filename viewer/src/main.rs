@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 use viewer::app::{Role, Session};
+use viewer::attached::Attached;
 use viewer::drawing::Item;
 use viewer::standard_frame::StandardFrame;
 use viewer::what_if::WhatIf;
@@ -37,7 +38,10 @@ fn main() -> ExitCode {
     };
     program::interrupt::exit_when_asked();
     let done = match &args.out {
-        _ if args.measure => viewer::measuring::table().map(program::print).map_err(Failure::Device),
+        _ if args.measure => {
+            let scene = args.file.as_ref().map_or("spheres".into(), |file| file.to_string_lossy());
+            viewer::measuring::table(&scene).map(program::print).map_err(Failure::Device)
+        }
         Some(out) => headless::run(&args, out),
         None => window::run(&args),
     };
@@ -53,6 +57,9 @@ fn main() -> ExitCode {
         }
     }
 }
+
+/// Maximum time to wait for plan and times of an engine, in runs without a window.
+const ATTACH_PATIENCE: Duration = Duration::from_secs(30);
 
 /// Returns the initial what-if for graphs.
 fn first(args: &args::Args) -> Result<WhatIf, Failure> {
@@ -94,6 +101,14 @@ fn settled(session: &mut Session) -> Result<(), Failure> {
 fn opened(args: &args::Args, session: &mut Session) -> Result<(), Failure> {
     standard(args, session)?;
     settled(session)?;
+    if let Some(address) = &args.attach {
+        let mut attached = Attached::open(address, || {});
+        let complete = attached.settle(session, ATTACH_PATIENCE);
+        if !complete {
+            session.say(format!("{address}: the engine draws no frame; run it while the viewer is attached"));
+        }
+        settled(session)?;
+    }
     let files = [(&args.file, Role::Shown), (&args.trace, Role::Shown), (&args.against, Role::Against)];
     for (path, role) in files {
         let Some(path) = path else { continue };

@@ -1,13 +1,15 @@
 //! Cost of the panels: layout and scrolling of a large graph, and every panel of the standard frame.
 
+mod loading;
+
 use crate::app::{Pane, Session, Viewer};
 use crate::offscreen::Offscreen;
-use crate::plan_data::PlanData;
 use crate::standard_frame::StandardFrame;
+use crate::synthetic::large;
 use crate::view::{View, graph};
 use crate::what_if::WhatIf;
 use egui::{Context, Event, MouseWheelUnit, RawInput, Rect, TouchPhase, Vec2, pos2, vec2};
-use framegraph::{Caps, Entry, Exit, Extent, Format, Graph, Intent, Options, Plan, Scratch, TextureDesc, compile};
+use framegraph::Caps;
 use std::fmt::Write;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -17,45 +19,11 @@ const SIZE: [u32; 2] = [1280, 720];
 /// Number of measured frames.
 const FRAMES: usize = 40;
 
-/// Returns the plan of a graph with `passes` + 40 passes that read earlier ones.
+/// Measures and returns a Markdown table. `scene` is loaded while tabs are clicked: a built-in name or a path.
 ///
 /// # Errors
-/// An error of the compiler; none is known.
-pub fn large(passes: usize) -> Result<PlanData, String> {
-    let mut graph = Graph::new();
-    let desc = |format| TextureDesc::new(Extent::FRAME, format);
-    let mut screen = graph.import_texture("screen", desc(Format::Rgba8Unorm), Entry::Defined, Exit::Keep);
-    let mut made = Vec::new();
-    for pass in 0..passes {
-        let written = graph.texture(&format!("texture {pass}"), desc(Format::R8Unorm));
-        // Each pass reads its predecessor, an older pass, and every hundredth one the first pass.
-        let read = [pass.checked_sub(1), pass.checked_sub(37), (pass % 100 == 99).then_some(0)];
-        let read: Vec<_> = read.into_iter().flatten().filter_map(|before| made.get(before).copied()).collect();
-        let declared = graph.add_fn(&format!("pass {pass}"), |builder| {
-            read.into_iter().try_for_each(|texture| builder.sampled(texture).map(drop))?;
-            builder.color(written, Intent::Overwrite)
-        });
-        made.push(declared.map_err(|e| e.to_string())?);
-    }
-    for last in made.iter().rev().take(40).copied().collect::<Vec<_>>() {
-        let name = format!("show {}", graph.passes().len());
-        let shown = graph.add_fn(&name, |builder| {
-            builder.sampled(last)?;
-            builder.color(screen, Intent::Modify)
-        });
-        screen = shown.map_err(|e| e.to_string())?;
-    }
-    let mut plan = Plan::new();
-    compile(&graph, &Caps::desktop(), &Options::for_frame(64, 64), &mut Scratch::new(), &mut plan)
-        .map_err(|e| e.to_string())?;
-    PlanData::of(&plan, "large").map_err(|e| e.to_string())
-}
-
-/// Measures and returns a Markdown table.
-///
-/// # Errors
-/// An error of the standard frame or of the device.
-pub fn table() -> Result<String, String> {
+/// An error of the standard frame, of the scene or of the device.
+pub fn table(scene: &str) -> Result<String, String> {
     let profile = if cfg!(debug_assertions) { "not optimized" } else { "optimized" };
     let mut rows = vec![("measurement".to_owned(), format!("median, ms ({profile})"))];
     let plan = large(2000)?;
@@ -70,10 +38,25 @@ pub fn table() -> Result<String, String> {
     let (shown, idle) = frames(&mut viewer, true, None)?;
     rows.push((format!("CPU time of a frame while scrolling, {passes} passes"), ms(shown)));
     rows.push(("repaints without input".into(), if idle { "no" } else { "yes" }.into()));
+    for view in [View::Timeline, View::Memory] {
+        viewer.turn_to(Pane::View(view));
+        let shown = frames(&mut viewer, true, None)?.0;
+        rows.push((
+            format!("CPU time of a frame while scrolling, {passes} passes, {} in front", view.word()),
+            ms(shown),
+        ));
+    }
+    viewer.turn_to(Pane::View(View::Graph));
     match Offscreen::as_windows() {
         Ok(mut screen) => {
             let drawn = frames(&mut viewer, true, Some(&mut screen))?.0;
             rows.push((format!("time of a frame while scrolling, drawn by {}", screen.gpu().describe()), ms(drawn)));
+            let loading::Answers { took, loaded } = loading::answers(screen.gpu(), scene, SIZE)?;
+            let (clicks, loaded_s) = (took.len(), loaded.as_secs_f64());
+            let during = format!("while {scene} loads for {loaded_s:.1} s");
+            rows.push((format!("from a click on a tab to its frame {during}, {clicks} clicks"), ms(took[clicks / 2])));
+            let longest = took.last().copied().unwrap_or_default();
+            rows.push((format!("longest time from a click on a tab to its frame {during}"), ms(longest)));
         }
         Err(error) => rows.push(("no device".into(), error)),
     }

@@ -6,10 +6,9 @@ use crate::accuracy_data::AccuracyData;
 use crate::drawing::Item;
 use crate::job::Job;
 use crate::open::{Opened, open};
-use crate::panel::Questions;
+use crate::panel::{Questions, ViewData};
 use crate::plan_data::PlanData;
 use crate::trace_data::TraceData;
-use crate::view::{ViewContext, graph};
 use crate::watch::Watch;
 use crate::what_if::{Planner, WhatIf};
 use std::path::{Path, PathBuf};
@@ -118,10 +117,16 @@ impl Session {
         self.budget_ms = budget_ms;
     }
 
-    /// Returns the data that views show in addition to the plan.
-    pub fn context(&self) -> ViewContext<'_> {
-        let (accuracy, trace) = (self.accuracy.as_deref(), self.trace.as_deref());
-        ViewContext { against: self.against(), trace, accuracy, budget_ms: self.budget_ms, selected: self.selected }
+    /// Returns the data that views show.
+    pub fn data(&self) -> ViewData<'_> {
+        ViewData {
+            plan: self.plan.as_ref(),
+            against: self.compared(),
+            trace: self.trace.as_ref(),
+            selected: self.selected,
+            generation: self.generation,
+            times: self.times(),
+        }
     }
 
     /// Counts changes of the displayed data.
@@ -151,12 +156,6 @@ impl Session {
         self.documents += 1;
         (self.notice, self.selected) = (None, None);
         self.messages.clear();
-    }
-
-    /// Returns the selected item and the items related to it.
-    pub fn lit(&self) -> Vec<Item> {
-        let lit = self.selected.zip(self.plan.as_ref()).map(|(item, plan)| graph::lit(plan, item));
-        lit.unwrap_or_default()
     }
 
     /// Returns the plan without what-if changes.

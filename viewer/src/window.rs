@@ -9,7 +9,7 @@ use framegraph_wgpu::Gpu;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
-use viewer::app::{Pane, Role, Session, Viewer};
+use viewer::app::{Role, Session, Viewer};
 use viewer::drawing::Theme;
 use viewer::live::Live;
 use viewer::live::capture::Document;
@@ -85,9 +85,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             shown.arrange(text);
         }
         if let Some(view) = args.view {
-            shown.turn_to(Pane::View(view));
+            shown.turn_to(view);
         }
         shown.recent = remembered.recent;
+        if let Some(address) = &args.attach {
+            let wake = cc.egui_ctx.clone();
+            shown.attach(address, move || wake.request_repaint());
+        }
         let files =
             [(args.against, Role::Against), (args.trace, Role::Shown), (args.file.filter(|_| !args.live), Role::Shown)];
         let waiting = files.into_iter().filter_map(|(path, role)| Some((path?, role))).collect();

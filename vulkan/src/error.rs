@@ -47,6 +47,13 @@ pub enum Error {
         /// Name of the import.
         resource: String,
     },
+    /// Two imports are bound to one image or buffer, and a pass writes one of them.
+    Shared {
+        /// Name of the first import.
+        resource: String,
+        /// Name of the second import.
+        other: String,
+    },
     /// The schedule uses more queues than the device has.
     Queues {
         /// Number of queues of the schedule.
@@ -130,6 +137,11 @@ impl fmt::Display for Error {
                 write!(f, "{resource}: the device does not support {format} with this usage; use another format")
             }
             Self::Import { resource } => write!(f, "{resource}: the import is not bound; add it to `Imports`"),
+            Self::Shared { resource, other } => write!(
+                f,
+                "{resource}: it is bound to the image or buffer of the import {other}; declare `Graph::may_alias_buffer`, \
+                 or import it once"
+            ),
             Self::Queues { wanted, given } => {
                 write!(f, "schedule: it uses {wanted} queues and the device has {given}; schedule for fewer queues")
             }

@@ -149,6 +149,10 @@ impl Executor {
         if let Some(id) = imports.missing(plan) {
             return Err(Error::Import { resource: plan.graph().resource_name(id).to_owned() });
         }
+        if let Some(pair) = imports.shared(plan) {
+            let [resource, other] = pair.map(|id| plan.graph().resource_name(id).to_owned());
+            return Err(Error::Shared { resource, other });
+        }
         self.dirty = true;
         let result = self.run(&imports, &mut record);
         if result.is_ok() {

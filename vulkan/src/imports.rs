@@ -105,6 +105,22 @@ impl Imports {
         self.signals.push(semaphore);
     }
 
+    /// Returns two imports that are bound to one image or buffer, if a pass writes one of them and the graph does not
+    /// declare that they may alias.
+    pub(crate) fn shared(&self, plan: &Plan) -> Option<[ResourceId; 2]> {
+        let graph = plan.graph();
+        let pairs = self.rows.iter().flat_map(|(a, row)| {
+            let same = move |(b, other): &(&ResourceId, &Import)| *b > a && other.thing == row.thing;
+            self.rows.iter().filter(same).map(|(b, _)| [*a, *b])
+        });
+        let written = |resource: ResourceId| {
+            let kept = graph.pass_ids().filter(|pass| !plan.is_culled(*pass));
+            kept.flat_map(|pass| graph.accesses_of(pass)).any(|a| a.resource == resource && a.mode.writes())
+        };
+        let mut pairs = pairs.filter(|[a, b]| !graph.are_aliases(*a, *b));
+        pairs.find(|pair| pair.iter().any(|resource| written(*resource)))
+    }
+
     /// Returns the first import that the plan uses and that is not bound, or bound to the wrong kind.
     pub(crate) fn missing(&self, plan: &Plan) -> Option<ResourceId> {
         let graph = plan.graph();

@@ -58,6 +58,10 @@ impl Layouts {
             scope.from = to;
         } else {
             scope.from_access = accesses(row.from_stages, from_state)[1];
+            if plan.graph().has_alias(row.resource) {
+                // The last write may be one of another import, in another state.
+                scope.from_access |= vk::AccessFlags2::MEMORY_WRITE;
+            }
         }
         if self.explicit_chains {
             pending.memory.push(Scope { from: scope.from, to: scope.to, ..Scope::default() });

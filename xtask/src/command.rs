@@ -1,6 +1,7 @@
 //! The commands, one per file.
 
 mod bench;
+mod bevy;
 mod circles;
 mod corpus;
 mod demo;
@@ -42,4 +43,5 @@ pub const ALL: &[Command] = &[
     rooms::COMMAND,
     corpus::COMMAND,
     package::COMMAND,
+    bevy::COMMAND,
 ];

@@ -2,8 +2,8 @@
 
 use crate::queues;
 use framegraph::{Caps, Order};
+use framegraph_check::Budget;
 use framegraph_queues::QueueLayout;
-use program::budget::Budget;
 use program::clap::{self, ArgAction};
 use program::cli::{self, Given, Parsed, argument, flag, option};
 use std::ffi::OsString;
@@ -28,6 +28,10 @@ pub struct Args {
     pub diff: Option<PathBuf>,
     /// Limits on the cost of the plan.
     pub budget: Budget,
+    /// File with further limits.
+    pub limits: Option<PathBuf>,
+    /// File with the expected output.
+    pub golden: Option<PathBuf>,
     /// Output file; `None` for standard output.
     pub out: Option<PathBuf>,
     /// Options of the schedule on several queues.
@@ -87,14 +91,13 @@ pub enum Command {
 /// Default of `--budget-steps`.
 const BUDGET_STEPS: u64 = 150_000_000;
 
-const ABOUT: &str = "\
-Compiles a frame graph from a file without a GPU and prints the plan.";
+const ABOUT: &str = "Compiles a frame graph from a file without a GPU and prints the plan.";
 
 const USAGE: &str = "\
 plan FRAME.ron [OPTIONS]
        plan --offsets FILE.csv [--budget-steps N] [--seconds S] [--out FILE]";
 
-const AFTER: &str = "Exit codes: 0 success, 1 budget exceeded, 2 invalid input or output, 128 + N stopped by signal N.";
+const AFTER: &str = "Exit codes: 0 success, 1 budget exceeded or golden differs, 2 invalid input or output, 128 + N stopped by signal N.";
 
 /// Returns the declaration of all options.
 fn command() -> clap::Command {
@@ -120,9 +123,19 @@ fn command() -> clap::Command {
             "LIMITS",
             "Exit with code 1 and list the responsible decisions if a limit is exceeded. LIMITS is NAME=MAX,... with the \
              names loads (attachments loaded from memory: unresolves), stores (attachments stored to memory: resolves), \
-             steps, culled (passes), bytes (memory of transient resources) and traffic (bytes loaded and stored). bytes \
-             and traffic accept B, kB, MB, GB (powers of 1000), KiB, MiB and GiB (powers of 1024): --budget \
+             multisample_resolves, full_screen_resolves, steps, culled (passes), bytes (memory of transient resources), \
+             own_bytes (exports and histories), loaded_bytes, stored_bytes and traffic (both). Bytes accept B, kB, MB, GB (powers of 1000), KiB, MiB and GiB (powers of 1024): --budget \
              loads=0,stores=3,bytes=200MB",
+        ),
+        option(
+            "assert",
+            "FILE",
+            "Like --budget, with limits from a file: NAME=MAX, one a line or separated by commas; # starts a comment",
+        ),
+        option(
+            "golden",
+            "FILE",
+            "Exit with code 1 and print a diff unless the output equals FILE. UPDATE_GOLDENS=1 writes FILE instead",
         ),
         option(
             "queues",
@@ -144,7 +157,7 @@ fn command() -> clap::Command {
              standard error, every second during the search. A signal stops the search and prints the best offsets found \
              so far",
         )
-        .conflicts_with_all(["FRAME.ron", "caps", "size", "set", "order", "format", "diff", "budget", "queues", "costs"]),
+        .conflicts_with_all(["FRAME.ron", "caps", "size", "set", "order", "format", "diff", "budget", "assert", "golden", "queues", "costs"]),
         option("budget-steps", "N", "Maximum number of search steps for --offsets (150000000)"),
         option("seconds", "S", "Time limit of the search in seconds (none)"),
         flag("plugins", "List the plugin kinds that files can name, with their slots"),
@@ -181,6 +194,8 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
         format: Format::Text,
         diff: None,
         budget: Budget::default(),
+        limits: None,
+        golden: None,
         out: None,
         queues: None,
     };
@@ -198,6 +213,8 @@ pub fn parse(args: impl Iterator<Item = OsString>) -> Result<Command, String> {
             "format" => found.format = item.parse("text, json, dot, mermaid or svg", format)?,
             "diff" => found.diff = Some(item.raw().into()),
             "budget" => found.budget = Budget::parse(&item.text()?).map_err(|error| format!("--budget: {error}"))?,
+            "assert" => found.limits = Some(item.raw().into()),
+            "golden" => found.golden = Some(item.raw().into()),
             "queues" => found.queues = Some(QueuesArgs { layout: queues::layout(&item.text()?)?, costs: None }),
             "costs" => costs = Some(item.raw().into()),
             _ => found.out = Some(item.raw().into()),
@@ -274,7 +291,7 @@ mod tests {
     #[test]
     fn the_whole_command_line_is_read() {
         let line = "a.ron --caps tiler --size 640x360 --set msaa=on --set fxaa=off --order optimized \
-                    --format json --diff b.ron --budget loads=0 --out c.json";
+                    --format json --diff b.ron --budget loads=0 --assert d --golden e --out c.json";
         let Ok(Command::Plan(args)) = parsed(line) else {
             panic!("the line is sound");
         };
@@ -282,6 +299,7 @@ mod tests {
         assert_eq!(args.size_texels, Some([640, 360]));
         assert_eq!(args.switches, [("msaa".into(), true), ("fxaa".into(), false)]);
         assert_eq!((args.order, args.format), (Order::Optimized, Format::Json));
+        assert_eq!((args.limits, args.golden), (Some("d".into()), Some("e".into())));
         assert_eq!((args.diff, args.out), (Some("b.ron".into()), Some("c.json".into())));
         assert!(matches!(parsed("--help a b c"), Ok(Command::Help(_))));
         assert!(matches!(parsed("--plugins"), Ok(Command::Plugins)));

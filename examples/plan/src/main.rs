@@ -1,7 +1,7 @@
 //! Compiles a frame graph from a file without a GPU.
 //!
 //! Prints the plan and its cost for a chosen device, size and set of features, compares two graphs, and checks
-//! budgets.
+//! budgets and expected outputs.
 
 mod args;
 mod offsets;
@@ -31,7 +31,7 @@ fn main() -> ExitCode {
     };
     match outcome {
         Ok(()) => program::exit(0),
-        Err(run::Failure::Budget(message)) => fail(1, &message),
+        Err(run::Failure::Assertion(message)) => fail(1, &message),
         Err(run::Failure::Input(message)) => fail(2, &message),
     }
 }

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 /// One line that names the file, the line, and the expected content.
 pub fn run(args: &OffsetsArgs) -> Result<(), String> {
     let OffsetsArgs { file, budget_steps, seconds, out } = args;
-    let outputs = output::prepare(out.as_deref(), [file.as_path()])?;
+    let outputs = output::prepare([out.as_deref(), None], [file.as_path()])?;
     let shown = file.display();
     let table = csv::read(&read(file)?).map_err(|e| format!("{shown}: {e}"))?;
     let options = Options { effort: Effort::Exact, budget_steps: *budget_steps };
@@ -36,7 +36,7 @@ pub fn run(args: &OffsetsArgs) -> Result<(), String> {
     interrupt::end_in_order();
     let packing = pack_watched(&table.items, None, &options, &mut Scratch::default(), &mut offsets, &mut watch)
         .map_err(|e| format!("{shown}: {e}"))?;
-    output::write(outputs, out.as_deref(), &csv::write(&table, &offsets))?;
+    output::write(outputs, out.as_deref(), None, &csv::write(&table, &offsets))?;
     let proof = if packing.optimal {
         "optimal".to_owned()
     } else {

@@ -4,14 +4,15 @@ use crate::args::{Args, Format};
 use crate::{output, queues};
 use framegraph::file::{self, GraphFile, Included, Registry};
 use framegraph::{Alias, Caps, Graph, Options, Plan, Scratch, diff, dump};
+use framegraph_check::{Budget, golden};
 use program::input;
 use std::path::Path;
 
 /// Reason for a non-zero exit code.
 #[derive(Debug)]
 pub enum Failure {
-    /// Exceeded budget limits with the decisions that caused them, one line each.
-    Budget(String),
+    /// Exceeded limits with the decisions that caused them, or the diff with the expected output.
+    Assertion(String),
     /// Invalid input, one line per error.
     Input(String),
 }
@@ -19,10 +20,10 @@ pub enum Failure {
 /// Frame size in texels if neither the file nor the command line sets one.
 const FRAME: [u32; 2] = [1920, 1080];
 
-/// Compiles, prints, and checks the budget.
+/// Compiles, prints, and checks budgets and the expected output.
 ///
 /// # Errors
-/// Invalid input, or an exceeded budget. In the second case the output is written nevertheless.
+/// Invalid input, or a failed assertion. In the second case the output is written nevertheless.
 pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
     let source = |path: &Path| {
         let (path, text) = (path.display().to_string(), read(path)?);
@@ -35,8 +36,12 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
     let read = sources.iter().flat_map(|(path, _, included)| [path.as_str()].into_iter().chain(included.paths()));
     let device = args.caps.ends_with(".ron").then_some(args.caps.as_str());
     let costs = args.queues.as_ref().and_then(|queues| queues.costs.as_deref());
-    let outputs =
-        output::prepare(args.out.as_deref(), read.chain(device).map(Path::new).chain(costs)).map_err(Failure::Input)?;
+    let golden = args.golden.as_deref();
+    let (made, compared) = if golden::is_updating() { (golden, None) } else { (None, golden) };
+    let read = read.chain(device).map(Path::new).chain(costs).chain(args.limits.as_deref()).chain(compared);
+    let outputs = output::prepare([args.out.as_deref(), made], read).map_err(Failure::Input)?;
+    let limits = args.limits.as_deref().map(limits).transpose().map_err(Failure::Input)?;
+    let committed = compared.map(crate::run::read).transpose().map_err(Failure::Input)?;
     let parsed = sources
         .iter()
         .map(|(path, text, included)| GraphFile::parse_with(path, text, included).map_err(|e| e.to_string()));
@@ -48,14 +53,24 @@ pub fn run(args: &Args, registry: &Registry<'_, Graph>) -> Result<(), Failure> {
         (None, None) => shown(&plan, frame.name(), args.format),
         (Some(other), _) => {
             let other = planned(args, registry, other, Some(&frame)).map_err(Failure::Input)?;
-            compared(&plan, &other, args.format)
+            differences(&plan, &other, args.format)
         }
     };
-    output::write(outputs, args.out.as_deref(), &text).map_err(Failure::Input)?;
-    match args.budget.broken(&plan) {
-        None => Ok(()),
-        Some(broken) => Err(Failure::Budget(broken)),
+    output::write(outputs, args.out.as_deref(), made, &text).map_err(Failure::Input)?;
+    let mut failed: Vec<String> = Vec::new();
+    for budget in [Some(&args.budget), limits.as_ref()].into_iter().flatten() {
+        failed.extend(budget.check(&plan).err().map(|error| error.to_string()));
     }
+    if let (Some(path), Some(committed)) = (compared, committed) {
+        let compared = golden::compare(&path.display().to_string(), &committed, &text);
+        failed.extend(compared.err().map(|error| error.to_string()));
+    }
+    if failed.is_empty() { Ok(()) } else { Err(Failure::Assertion(failed.join("\n"))) }
+}
+
+/// Reads a file with limits.
+fn limits(path: &Path) -> Result<Budget, String> {
+    Budget::parse(&read(path)?).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 /// Compiles the plan of one file. Each switched feature must exist in `file` or in `other`, the file it is compared
@@ -116,7 +131,7 @@ fn shown(plan: &Plan, name: &str, format: Format) -> String {
     }
 }
 
-fn compared(before: &Plan, after: &Plan, format: Format) -> String {
+fn differences(before: &Plan, after: &Plan, format: Format) -> String {
     let diff = diff(before, after);
     match format {
         Format::Json => diff.json(),

@@ -4,15 +4,9 @@
 //! - [`outputs`] (feature `run`): output files, checked before the work and renamed into place together after it.
 //! - [`input`]: input files, which must be regular files.
 //! - [`interrupt`] (feature `run`): SIGINT and SIGTERM as a flag that long work polls at each step.
-//! - [`bytes`](fn@crate::bytes) (feature `run`): byte counts with units.
 //! - [`cli`] (feature `cli`): command lines.
-//! - [`budget`] (feature `budget`): limits on the cost of a plan.
 //! - [`progress`] (feature `run`): progress on standard error.
 
-#[cfg(feature = "budget")]
-pub mod budget;
-#[cfg(feature = "run")]
-mod bytes;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod input;
@@ -30,8 +24,6 @@ pub mod progress;
 #[cfg(feature = "run")]
 mod target;
 
-#[cfg(feature = "run")]
-pub use bytes::bytes;
 #[cfg(feature = "cli")]
 pub use clap;
 pub use print::{ended, error, exit, line, no_arguments, note, print};

@@ -1,5 +1,7 @@
 //! Tools to test plans of `framegraph`, for its own tests and for engines that compile plans in their CI.
 //!
+//! - [`Budget`]: limits on loads, stores, steps and bytes, with errors that name the responsible decisions.
+//! - [`golden`]: committed texts of plans, with a diff.
 //! - [`check()`]: an independent checker of plans, the *oracle*. It shares no code with the compiler.
 //! - [`generate`]: random graphs, devices and options.
 //! - [`mutation`]: broken plans that [`check()`] must report.
@@ -21,10 +23,14 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+pub mod budget;
 pub mod check;
 pub mod generate;
+pub mod golden;
 pub mod mutation;
 
+#[doc(inline)]
+pub use budget::Budget;
 #[doc(inline)]
 pub use check::check;
 pub use framegraph_pack::{csv, planted};

@@ -20,7 +20,11 @@ pub fn assign(
     may_leave: &dyn Fn(StepId) -> bool,
 ) -> Vec<QueueId> {
     let kind = |step: usize| plan.steps()[step].kind;
-    let asks_to_stay = |member: &StepPass| plan.graph().passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE);
+    // Barriers order passes whose imports may alias, so they stay on one queue.
+    let aliased = |pass| plan.graph().accesses_of(pass).iter().any(|access| plan.graph().has_alias(access.resource));
+    let asks_to_stay = |member: &StepPass| {
+        plan.graph().passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE) || aliased(member.pass)
+    };
     let stays = |step: usize| plan.passes_of(StepId::at(step)).iter().any(asks_to_stay);
     let movable = |step: usize| kind(step) != PassKind::Raster && !stays(step) && may_leave(StepId::at(step));
     let mut groups = chains(dependencies, &movable);

@@ -87,7 +87,14 @@ pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
     }
     let mut found = Vec::new();
     for (step, lane) in plan.step_ids().zip(lanes) {
-        let asks = |member: &StepPass| plan.graph().passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE);
+        let graph = plan.graph();
+        let asks = |member: &StepPass| {
+            graph.passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE)
+                || graph
+                    .accesses_of(member.pass)
+                    .iter()
+                    .any(|access| graph.aliases_of(access.resource).next().is_some())
+        };
         let asked = *lane != QueueId::MAIN && plan.passes_of(step).iter().any(asks);
         if asked || !layout.queues[lane.index()].runs(plan.steps()[step.index()].kind) {
             found.push(Violation::WrongQueue { step });
@@ -109,6 +116,9 @@ pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
             }));
         }
     }
+    // Also of planes that are attached without an access.
+    let late = plan.barriers().iter().filter(|row| !row.after.is_none() && !ordered(row.after, row.before));
+    found.extend(late.map(|row| Violation::Unordered { first: row.after, second: row.before, resource: row.resource }));
     found.extend(not_owned(plan, schedule));
     for queue in layout.ids().skip(1) {
         let last = lanes.iter().rposition(|lane| *lane == queue).map(StepId::at);

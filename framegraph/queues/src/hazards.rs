@@ -1,12 +1,12 @@
 //! Dependencies between the steps of a plan: through contents, and through shared memory.
 
-use framegraph::{Access, Placement, Plan, ResourceId};
+use framegraph::{Access, Aspect, Mode, Placement, Plan, Range, ResourceId};
 use std::collections::HashSet;
 
 /// Returns the earlier steps that each step depends on, latest first. May include implied dependencies.
 pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
     let mut found = vec![Vec::new(); plan.steps().len()];
-    let accessed = accesses_by_resource(plan);
+    let accessed = with_other_planes(plan, accesses_by_resource(plan));
     let moved = moved(plan);
     for (resource, accesses) in accessed.iter().enumerate() {
         let resource = ResourceId::at(resource);
@@ -37,6 +37,22 @@ pub fn dependencies(plan: &Plan) -> Vec<Vec<u32>> {
 fn moved(plan: &Plan) -> HashSet<(u32, ResourceId)> {
     let rows = plan.barriers().iter().filter(|row| row.from != row.to);
     rows.map(|row| (row.before.index() as u32, row.resource)).collect()
+}
+
+/// Adds reads of whole depth-stencil attachments. Vulkan attaches both planes, also if a pass declares one of them, and
+/// the plan moves the other plane to a layout for it.
+fn with_other_planes(plan: &Plan, mut accessed: Vec<Vec<(u32, Access)>>) -> Vec<Vec<(u32, Access)>> {
+    for rows in &mut accessed {
+        let whole = |(step, access): &(u32, Access)| {
+            let two = plan.format(access.resource).is_some_and(|format| format.planes() > 1);
+            let one = access.kind.is_depth() && access.range.aspect != Aspect::All;
+            let range = Range { aspect: Aspect::All, ..access.range };
+            (two && one).then_some((*step, Access { mode: Mode::Read, range, ..*access }))
+        };
+        rows.extend(rows.iter().filter_map(whole).collect::<Vec<_>>());
+        rows.sort_by_key(|(step, _)| *step);
+    }
+    accessed
 }
 
 /// Returns for each resource the steps that access it, in order, with their accesses.

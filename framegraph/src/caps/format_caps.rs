@@ -128,7 +128,8 @@ impl From<FormatTable> for BTreeMap<Format, FormatCaps> {
 #[cfg(feature = "files")]
 impl serde::Serialize for FormatCaps {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.names())
+        // Binary formats need the length of a sequence.
+        serializer.collect_seq(self.names().collect::<Vec<_>>())
     }
 }
 

@@ -9,6 +9,8 @@
 //! Imported resources start in the state declared by their owner, and wait for the owner's stages. The first use of
 //! memory that another resource used before is an **aliasing barrier**: it waits for that resource, and its contents
 //! are undefined.
+//!
+//! An import that may alias others also waits for their uses.
 
 use super::loads::attached_range;
 use super::ownership::{Owned, take_over};
@@ -49,6 +51,16 @@ pub(crate) struct BarrierScratch {
     tenants: Vec<(StepId, ResourceId)>,
     owned: Vec<Owned>,
     befores: Vec<Before>,
+    /// The earlier uses of the aliases of each resource in `now` that has some.
+    beside: Vec<(ResourceId, Beside)>,
+}
+
+/// Uses of the aliases of a resource.
+#[derive(Clone, Copy, Debug)]
+struct Beside {
+    stages: Stages,
+    /// The last one.
+    step: StepId,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +108,7 @@ pub(crate) fn barriers(
     barriers: &mut Vec<Barrier>,
 ) {
     let graph = view.graph;
-    let BarrierScratch { last, now, .. } = scratch;
+    let BarrierScratch { last, now, beside, .. } = scratch;
     barriers.clear();
     last.clear();
     last.resize(parts.total(), NEVER);
@@ -111,6 +123,9 @@ pub(crate) fn barriers(
     for (index, step) in steps.iter().enumerate() {
         let step_id = StepId::at(index);
         gather(parts, view.of(step), step.attachments.of(attachments), now);
+        if !graph.aliases.is_empty() {
+            find_aliases(graph, parts, last, now, beside);
+        }
         let mut at = 0;
         while at < now.len() {
             let first = now[at];
@@ -123,7 +138,9 @@ pub(crate) fn barriers(
             {
                 end += 1;
             }
-            let needs = before.step.is_none() || before.writes || first.writes || before.state != first.state;
+            let beside = beside.iter().find(|(r, _)| *r == first.resource).map(|(_, beside)| *beside);
+            let later = beside.is_some_and(|beside| before.step.is_none() || beside.step > before.step);
+            let needs = before.step.is_none() || before.writes || first.writes || before.state != first.state || later;
             if needs {
                 barriers.push(Barrier {
                     before: step_id,
@@ -132,9 +149,9 @@ pub(crate) fn barriers(
                     parts: (end - at) as u32,
                     from: before.state,
                     to: first.state,
-                    from_stages: before.stages,
+                    from_stages: beside.map_or(before.stages, |beside| before.stages.union(beside.stages)),
                     to_stages: first.stages,
-                    after: before.step,
+                    after: beside.filter(|_| later).map_or(before.step, |beside| beside.step),
                     aliases: ResourceId::NONE,
                 });
             }
@@ -155,6 +172,18 @@ pub(crate) fn barriers(
     aliasing_barriers(graph, caps, parts, resources, scratch, barriers);
     barriers.retain(|b| !is_silent(graph, resources, b));
     barriers.sort_unstable_by_key(|b| (b.before, b.resource, b.first_part));
+}
+
+/// Collects the earlier uses of the aliases of all buffers that a step uses.
+#[cold]
+fn find_aliases(graph: &Tables, parts: &Parts, last: &[Last], now: &[Use], beside: &mut Vec<(ResourceId, Beside)>) {
+    beside.clear();
+    for used in now {
+        let parts = graph.aliases_of(used.resource).flat_map(|other| &last[parts.all(other)]);
+        let uses = parts.filter(|last| !last.step.is_none()).map(|last| (last.stages, last.step));
+        let all = uses.reduce(|(stages, step), (more, then)| (stages.union(more), step.max(then)));
+        beside.extend(all.map(|(stages, step)| (used.resource, Beside { stages, step })));
+    }
 }
 
 /// Returns `true` for a transition from undefined contents to a first use of memory that no step used before. Textures

@@ -136,9 +136,10 @@ error_enum! {
             "attach a texture, or make it a compute pass";
         RasterStorage { access: AccessKind } "a raster pass uses it as `{access}`, which the device does not support",
             "write it in a compute pass";
-        /// Too many resources for one shader stage.
-        Bindings { kind: BindingClass, count: u32, max: u32 }
-            "the pass uses {count} {kind}, the device allows {max} in a shader stage", "{hint}",
+        /// Too many resources for the shader stages of a pass.
+        Bindings { kind: BindingClass, count: u32, max: u32, /** Counts only those that the pass writes. */ written: bool }
+            "the pass {uses} {count} {kind}, the device allows {max} in its shader stages", "{hint}",
+            uses = if *written { "writes" } else { "uses" },
             hint = match kind {
                 BindingClass::SampledTextures => "split the pass, or combine textures as layers of one texture",
                 BindingClass::StorageTextures => "split the pass, or combine textures as layers of one texture",
@@ -163,7 +164,7 @@ error_enum! {
                 None => "use a range with offset and size in multiples of 4",
                 Some(_) => "overwrite it, or use a renderable format",
             };
-        Aliased "two imports may alias, but the device needs the layout of each texture",
+        Aliased "two imported textures may alias, but the device needs the layout of each texture",
             "declare one import for the texture, and use its handle in all passes";
         TooManyPasses "the graph has too many passes", "split the graph";
     }

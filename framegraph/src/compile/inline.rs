@@ -15,7 +15,7 @@ use crate::graph::{PassFlags, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
 use crate::plan::StepPass;
 use crate::resolve::ResolveMode;
-use crate::resource::Kind;
+use crate::resource::{Dimension, Kind};
 
 /// Number of accesses to each resource by kept passes, and its export flag.
 #[derive(Debug, Default)]
@@ -117,12 +117,15 @@ pub(crate) fn inlinable(
         return Err(Refusal::NeededAsTexture);
     }
     let same_size = to.mip_extent(options.frame, output.range.mip.into()) == from.extent.texels(options.frame);
-    let layers = output.range.layer_range(to.tracked_layers());
+    // A layer of the target for each layer of the intermediate: two eyes of a stereo view, for example.
+    let layers = output.range.layer_range(to.tracked_layers()).len();
+    let read = input.range.layer_range(from.tracked_layers()).len();
     if !same_size
-        || from.layers != 1
+        || from.tracked_layers() as usize != layers
+        || read != layers
+        || from.dimension != Dimension::D2
         || from.mips != 1
         || from.samples != 1
-        || layers.end - layers.start != 1
         || output.range.slice
         || to.samples != 1
         || input.range.view.or(output.range.view).is_some()

@@ -4,7 +4,7 @@ use crate::access::Usage;
 use crate::caps::Caps;
 use crate::decision::{Decision, MemoryNeed, Reason, Subject};
 use crate::graph::Tables;
-use crate::options::Options;
+use crate::options::{Alias, Options};
 use crate::plan::{Attachment, Placement, Planned, StoreOp};
 use crate::resource::{Dimension, Kind};
 
@@ -61,6 +61,8 @@ fn need(graph: &Tables, caps: &Caps, options: &Options, attachment: &Attachment,
     } else if !row.usage.without(Usage::ATTACHMENT).without(Usage::INPUT_ATTACHMENT).is_empty() {
         // For example, another layer of it is written as storage.
         Some(MemoryNeed::OtherUse)
+    } else if !caps.memoryless_saves && caps.placed && options.alias == Alias::Heap {
+        Some(MemoryNeed::NotSaved)
     } else {
         // The resource has no contents before or after its step.
         None

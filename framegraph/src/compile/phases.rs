@@ -7,6 +7,7 @@ use super::merge::{self, Merged};
 use super::parts::Parts;
 use super::reorder::OrderScratch;
 use super::steps::StepView;
+use super::validate::Allowed;
 use super::{barriers, heap, lifetimes, loads, memoryless, ops_fast_path, place, pool, schedule, stores};
 use crate::caps::Caps;
 use crate::decision::Decision;
@@ -23,6 +24,7 @@ pub struct Scratch {
     pub(super) measures: Measures,
     pub(super) parts: Parts,
     pub(super) defined: Vec<bool>,
+    pub(super) allowed: Allowed,
     pub(super) needs: Vec<NextUse>,
     pub(super) after: Vec<NextUse>,
     pub(super) dropped: Vec<(PassId, AccessId)>,

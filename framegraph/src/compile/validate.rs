@@ -7,6 +7,8 @@ mod attachments;
 mod clears;
 mod device;
 
+pub(crate) use device::Allowed;
+
 use super::error::{CompileError, CompileErrors, CompileReason};
 use super::framebuffer::framebuffer_of_pass;
 use super::measure::Measures;
@@ -17,7 +19,8 @@ use crate::format::Format;
 use crate::graph::{PassFlags, PassKind, Tables};
 use crate::id::{PassId, ResourceId};
 
-/// Appends every error of `graph` to `errors`; `defined` is scratch memory with one flag per part.
+/// Appends every error of `graph` to `errors`; `defined` is scratch memory with one flag per part, and `allowed` holds the
+/// checks of the last device.
 #[inline(never)]
 pub(crate) fn validate(
     graph: &Tables,
@@ -25,20 +28,22 @@ pub(crate) fn validate(
     parts: &Parts,
     measures: &Measures,
     defined: &mut Vec<bool>,
+    allowed: &mut Allowed,
     errors: &mut CompileErrors,
 ) {
     if graph.passes.len() >= PassId::NONE.index() {
         let reason = CompileReason::TooManyPasses;
         return errors.push(|| CompileError::new(graph, reason, PassId::NONE, ResourceId::NONE));
     }
-    if let (Some((import, _)), true) = (graph.aliases.first(), caps.explicit_barriers) {
+    let mut textures = graph.aliases.iter().filter(|(a, _)| graph.resources[a.index()].desc.texture().is_some());
+    if let (Some((import, _)), true) = (textures.next(), caps.explicit_barriers) {
         errors.push(|| CompileError::new(graph, CompileReason::Aliased, PassId::NONE, *import));
     }
     if graph.contents_uncertain {
         contents(graph, parts, measures, defined, errors);
     }
     let roomy = caps.max_color_attachments != 0 && caps.max_color_bytes_per_sample >= MAX_TILE_BYTES;
-    let allowed = device::Allowed::on(caps);
+    allowed.prepare(caps);
     for (index, pass) in graph.passes.iter().enumerate() {
         if !allowed.clearly(graph, &measures.rows, pass) {
             device::accesses(graph, caps, &measures.rows, PassId::at(index), errors);

@@ -241,6 +241,9 @@ causes! {
     /// The view has the sRGB twin of the texture's format, or the texture that of a view.
     View "view", "it is viewed in another format, which the device does not support for memoryless attachments",
         "declare it in the format of the view";
+    /// Only with a heap, whose memory later resources can use.
+    NotSaved "not_saved", "memoryless attachments save no memory on the device, and others can share its memory",
+        "use a device where they save memory";
     LoadedOrStored "loaded_or_stored", "its contents are loaded or stored",
         "clear or overwrite it, and do not read it after the step";
 }

@@ -1,8 +1,8 @@
-//! Imports that may be bound to one texture.
+//! Imports that may be bound to one texture or buffer.
 
 use crate::error::{DeclareError, DeclareReason};
-use crate::graph::{Graph, PassFlags, Tables};
-use crate::handle::{Tag, Texture};
+use crate::graph::{Graph, Tables};
+use crate::handle::{Buffer, Tag, Texture};
 use crate::id::{ResourceId, Span, VersionId};
 use crate::resource::{Exit, Kind};
 use std::panic::Location;
@@ -34,8 +34,26 @@ impl Graph {
     /// handles of one import.
     #[track_caller]
     pub fn may_alias(&mut self, a: Texture, b: Texture) -> Result<(), DeclareError> {
-        let location = Location::caller();
-        let pair = [(a.tag, a.version), (b.tag, b.version)];
+        self.alias_pair([(a.tag, a.version), (b.tag, b.version)], Location::caller())
+    }
+
+    /// Declares that two imported buffers may be bound to one buffer, with the effects of [`Graph::may_alias`].
+    ///
+    /// Works on every device. On devices with [`explicit_barriers`](crate::Caps::explicit_barriers), the barrier of each
+    /// import also waits for uses of the other one. On devices with several queues, the passes run on the first one.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Graph::may_alias`].
+    #[track_caller]
+    pub fn may_alias_buffer(&mut self, a: Buffer, b: Buffer) -> Result<(), DeclareError> {
+        self.alias_pair([(a.tag, a.version), (b.tag, b.version)], Location::caller())
+    }
+
+    fn alias_pair(
+        &mut self,
+        pair: [(Tag, VersionId); 2],
+        location: &'static Location<'static>,
+    ) -> Result<(), DeclareError> {
         let [a, b] = pair.map(|(tag, version)| self.kept_import(tag, version, location));
         let (a, b) = (a?, b?);
         if a == b {
@@ -69,7 +87,7 @@ impl Tables {
     pub(crate) fn mark_aliased(&mut self) {
         for index in 0..self.passes.len() {
             if self.accesses_alias(self.passes[index].accesses) {
-                self.passes[index].flags.set(PassFlags::ALIASED);
+                self.passes[index].flags.alias();
             }
         }
     }
@@ -83,6 +101,12 @@ impl Tables {
     /// Returns `true` if a resource is an import that [may alias](Graph::may_alias) another one.
     pub fn has_alias(&self, resource: ResourceId) -> bool {
         self.aliases.iter().any(|(a, b)| *a == resource || *b == resource)
+    }
+
+    /// Returns the imports that [may alias](Graph::may_alias) a resource.
+    pub fn aliases_of(&self, resource: ResourceId) -> impl Iterator<Item = ResourceId> {
+        let other = move |&(a, b)| if a == resource { Some(b) } else { (b == resource).then_some(a) };
+        self.aliases.iter().filter_map(other)
     }
 
     /// Returns `true` if [`Graph::may_alias`] was called with these two imports, in any order.

@@ -162,8 +162,12 @@ fn write_resource(plan: &Plan, resource: ResourceId, out: &mut String) -> std::f
     }
     write!(out, ", steps {}..{}, {}, {}", row.first.index(), row.last.index(), uses(row.usage), bytes(row.bytes))?;
     match row.placement {
-        Placement::Heap { offset } => writeln!(out, ", heap offset {offset}"),
-        Placement::Own => writeln!(out, ", own memory"),
-        other => writeln!(out, ", {}", place(other)),
+        Placement::Heap { offset } => write!(out, ", heap offset {offset}"),
+        Placement::Own => write!(out, ", own memory"),
+        other => write!(out, ", {}", place(other)),
+    }?;
+    for other in graph.aliases_of(resource) {
+        write!(out, ", may alias {}", escape_controls(graph.resource_name(other)))?;
     }
+    writeln!(out)
 }

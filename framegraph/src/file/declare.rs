@@ -9,7 +9,7 @@ use super::shape;
 use super::spanned::Source;
 use super::value::ValueReason;
 use crate::access::Range;
-use crate::error::DeclareError;
+use crate::error::{DeclareError, DeclareReason};
 use crate::graph::{Graph, PassKind};
 use crate::resource::TextureDesc;
 
@@ -107,6 +107,18 @@ impl<'f> Declaring<'_, 'f> {
                 let found = graph.previous(texture, age).map(drop);
                 found.map_err(|e| self.source.error(at, FileReason::Declare(e.reason)))
             }
+            Declared::Alias(pair, form) => {
+                let aliased = match pair.map(|row| handles[row]) {
+                    [Some(Handle::Texture(a)), Some(Handle::Texture(b))] => graph.may_alias(a, b).map_err(|e| e.reason),
+                    [Some(Handle::Buffer(a)), Some(Handle::Buffer(b))] => {
+                        graph.may_alias_buffer(a, b).map_err(|e| e.reason)
+                    }
+                    _ if pair.iter().any(|row| self.selected.lost[*row]) => Ok(()),
+                    [Some(_), Some(_)] => Err(DeclareReason::NoAlias),
+                    _ => return Err(self.source.value(&form.of, ValueReason::AliasAbove)),
+                };
+                aliased.map_err(|reason| self.source.error(&form.of, FileReason::Declare(reason)))
+            }
             Declared::Resource(row, ResourceForm::Texture(form)) => {
                 let desc = shape::texture(self.source, self.features, form)?;
                 let levels = if desc.mips == TextureDesc::ALL_MIPS { 16 } else { u64::from(desc.mips) };
@@ -137,7 +149,7 @@ impl<'f> Declaring<'_, 'f> {
                 handles[row] = Some(Handle::Buffer(buffer));
                 Ok(())
             }
-            Declared::Resource(_, ResourceForm::Previous(_)) => Ok(()),
+            Declared::Resource(_, ResourceForm::Previous(_) | ResourceForm::MayAlias(_)) => Ok(()),
         }
     }
 

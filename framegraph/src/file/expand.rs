@@ -69,6 +69,7 @@ impl Writer<'_, '_> {
             ResourceEntry::Texture(form) => ResourceForm::Texture(form),
             ResourceEntry::Buffer(form) => ResourceForm::Buffer(form),
             ResourceEntry::Previous(form) => ResourceForm::Previous(form),
+            ResourceEntry::MayAlias(form) => ResourceForm::MayAlias(form),
         };
         let mut fill = |text: &mut Spanned<String>| self.fill(text, names);
         match &mut form {
@@ -84,6 +85,7 @@ impl Writer<'_, '_> {
                 fill(&mut p.of);
                 p.when.iter_mut().for_each(fill);
             }
+            ResourceForm::MayAlias(a) => [&mut a.of, &mut a.with].into_iter().chain(&mut a.when).for_each(fill),
         }
         self.out.resources.push(form);
     }

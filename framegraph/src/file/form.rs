@@ -68,6 +68,7 @@ pub(super) enum ResourceEntry {
     Texture(TextureForm),
     Buffer(BufferForm),
     Previous(PreviousForm),
+    MayAlias(AliasForm),
     Each(EachForm<Self>),
 }
 
@@ -77,6 +78,7 @@ pub(super) enum ResourceForm {
     Texture(TextureForm),
     Buffer(BufferForm),
     Previous(PreviousForm),
+    MayAlias(AliasForm),
 }
 
 /// A loop: entries that are repeated for each number.
@@ -147,6 +149,14 @@ pub(super) struct BufferForm {
 pub(super) struct PreviousForm {
     pub(super) of: Spanned<String>,
     pub(super) age: u8,
+    pub(super) when: Option<Spanned<String>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "MayAlias")]
+pub(super) struct AliasForm {
+    pub(super) of: Spanned<String>,
+    pub(super) with: Spanned<String>,
     pub(super) when: Option<Spanned<String>>,
 }
 

@@ -65,17 +65,27 @@ impl<'f> Lookup<'_, '_, 'f> {
         })
     }
 
-    /// Looks up the histories of the declared previous images.
-    pub(super) fn previous(&self, declared: &mut Vec<Declared<'f>>, errors: &mut FileErrors) {
+    /// Looks up the histories of the declared previous images, and the imports that may alias.
+    pub(super) fn declared(&self, declared: &mut Vec<Declared<'f>>, errors: &mut FileErrors) {
         declared.retain_mut(|row| {
-            let Declared::Previous(history, _, of) = row else {
-                return true;
+            let mut find = |of: &Spanned<String>| match self.names.resource(&of.value, errors.is_full()) {
+                Ok(found) => found,
+                Err(reason) => {
+                    errors.push(|| self.source.error(of, reason));
+                    usize::MAX
+                }
             };
-            match self.names.resource(&of.value, errors.is_full()) {
-                Ok(found) => *history = found,
-                Err(reason) => errors.push(|| self.source.error(*of, reason)),
+            match row {
+                Declared::Resource(..) => true,
+                Declared::Previous(history, _, of) => {
+                    *history = find(of);
+                    *history != usize::MAX
+                }
+                Declared::Alias(pair, form) => {
+                    *pair = [find(&form.of), find(&form.with)];
+                    !pair.contains(&usize::MAX)
+                }
             }
-            *history != usize::MAX
         });
     }
 

@@ -40,7 +40,7 @@ pub(super) fn select<'f>(
     name_what_plugins_make(&mut out, &mut names, slots_of);
     out.lost.resize(out.resources.len(), false);
     let look_up = Lookup { source, names: &names, features };
-    look_up.previous(&mut out.declared, errors);
+    look_up.declared(&mut out.declared, errors);
     let Selected { passes, blind, .. } = &mut out;
     for row in passes {
         let found = errors.count();
@@ -98,6 +98,12 @@ fn resources<'f>(
             ResourceForm::Previous(p) => {
                 if on(source, features, p.when.as_ref(), errors) {
                     out.declared.push(Declared::Previous(usize::MAX, p.age, &p.of));
+                }
+                continue;
+            }
+            ResourceForm::MayAlias(a) => {
+                if on(source, features, a.when.as_ref(), errors) {
+                    out.declared.push(Declared::Alias([usize::MAX; 2], a));
                 }
                 continue;
             }

@@ -1,6 +1,6 @@
 //! The enabled entries of a file.
 
-use super::form::{ExportForm, ForwardForm, PassForm, ResourceForm};
+use super::form::{AliasForm, ExportForm, ForwardForm, PassForm, ResourceForm};
 use super::slot::PluginSlot;
 use super::spanned::Spanned;
 
@@ -30,6 +30,8 @@ pub(super) enum Declared<'f> {
     Resource(usize, &'f ResourceForm),
     /// The image of a history, a row of [`Selected::resources`], from that many frames ago.
     Previous(usize, u8, &'f Spanned<String>),
+    /// Two rows of [`Selected::resources`] that may alias.
+    Alias([usize; 2], &'f AliasForm),
 }
 
 impl Selected<'_> {

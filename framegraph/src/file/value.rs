@@ -16,6 +16,7 @@ error_enum! {
         MaxColors(colors: u8) "maximum of {colors} color attachments", "use a number from 1 to 8";
         MaxSide(side: u32) "maximum of {side} texels or layers", "use a number from 1 to 2^20";
         PreviousAbove "the history is listed later", "list it before its previous images";
+        AliasAbove "an import is listed later", "list `MayAlias` after both imports";
         NotAHistory { id: String } "`{id}` is not a history", "declare it with `kind: History(frames: 1)`";
         Subresources { max: u64 } "more than {max} subresources (level, layer and plane) in total",
             "use fewer levels or layers";

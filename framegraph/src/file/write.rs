@@ -28,6 +28,9 @@ pub fn to_ron(graph: &Graph, name: &str, frame: [u32; 2]) -> String {
     for resource in graph.resource_ids() {
         out += &resource_line(graph, resource, &ids);
     }
+    for (of, with) in graph.aliases.iter().map(|(a, b)| (&ids.resources[a.index()], &ids.resources[b.index()])) {
+        out += &format!("        MayAlias(of: {}, with: {}),\n", quoted(of), quoted(with));
+    }
     out += "    ],\n    passes: [\n";
     for pass in graph.pass_ids() {
         write_pass(graph, pass, &ids, &mut out);
@@ -175,8 +178,11 @@ fn write_pass(graph: &Graph, pass: PassId, ids: &Ids, out: &mut String) {
     if id != name {
         *out += &format!(", id: {}", quoted(id));
     }
-    let flags: Vec<_> =
-        Flag::ALL.iter().filter(|(_, flag)| row.flags.has(*flag)).map(|(flag, _)| format!("{flag:?}")).collect();
+    let flags: Vec<_> = Flag::ALL
+        .iter()
+        .filter(|(_, flag)| row.flags.declared().has(*flag))
+        .map(|(flag, _)| format!("{flag:?}"))
+        .collect();
     if !flags.is_empty() {
         *out += &format!(", flags: [{}]", flags.join(", "));
     }

@@ -21,7 +21,7 @@ enum_names! { PassKind: Raster "raster", Compute "compute", Copy "copy" }
 
 /// Properties of a pass beyond its accesses, as a set of bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct PassFlags(u8);
+pub struct PassFlags(u16);
 
 impl PassFlags {
     /// The pass has an effect outside of its declared resources, such as a query or a debug print. Never culled.
@@ -42,12 +42,31 @@ impl PassFlags {
     /// The pass clears a resource. Derived from its accesses.
     pub(crate) const CLEARS: Self = Self(64);
     /// The pass accesses an import that may alias another one: it keeps its place, and is neither culled nor merged.
-    pub(crate) const ALIASED: Self = Self(Self::SIDE_EFFECT.0 | Self::NEVER_MERGE.0);
+    /// Derived from its accesses.
+    const ALIASED: Self = Self(Self::DERIVED | Self::SIDE_EFFECT.0 | Self::NEVER_MERGE.0);
+    const DERIVED: u16 = 256;
+    /// Distance in bits from a flag that [`ALIASED`](Self::ALIASED) implies to the mark that it was declared.
+    const DECLARED: u32 = 9;
 
     /// Returns `true` if every flag of `other` is set.
     #[inline]
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 == other.0
+    }
+
+    /// Sets the flags of a pass that accesses an import that may alias another one.
+    pub(crate) const fn alias(&mut self) {
+        if self.0 & Self::DERIVED == 0 {
+            self.0 |= (self.0 & (Self::SIDE_EFFECT.0 | Self::NEVER_MERGE.0)) << Self::DECLARED;
+        }
+        self.0 |= Self::ALIASED.0;
+    }
+
+    /// Returns the flags without those that only an alias implies.
+    #[cfg(feature = "files")]
+    pub(crate) const fn declared(self) -> Self {
+        let implied = Self::SIDE_EFFECT.0 | Self::NEVER_MERGE.0;
+        if self.0 & Self::DERIVED != 0 { Self(self.0 & !implied | self.0 >> Self::DECLARED & implied) } else { self }
     }
 
     /// Sets the flags of `other`.

@@ -22,7 +22,7 @@ pub struct Tables {
     pub(crate) notes: Vec<Note>,
     /// Pairs of a forwarded texture, which no longer exists, and the texture it was forwarded to.
     pub(crate) forwards: Vec<(ResourceId, ResourceId)>,
-    /// Pairs of imports that may be bound to one texture.
+    /// Pairs of imports that may be bound to one texture or buffer.
     pub(crate) aliases: Vec<(ResourceId, ResourceId)>,
     /// Errors of methods that do not return a `Result`. The compiler reports them.
     pub(crate) errors: Vec<DeclareError>,

@@ -95,6 +95,112 @@ fn a_device_with_layouts_refuses_aliases() {
     let (caps, options, mut plan) = (Caps::desktop(), Options::for_frame(8, 8), Plan::new());
     let refused =
         compile(&graph(Alias::First), &caps, &options, &mut Scratch::new(), &mut plan).unwrap_err().to_string();
-    assert!(refused.contains("resource `a`: two imports may alias"), "{refused}");
+    assert!(refused.contains("resource `a`: two imported textures may alias"), "{refused}");
     assert!(compile(&graph(Alias::Never), &caps, &options, &mut Scratch::new(), &mut plan).is_ok());
+}
+
+/// Returns a graph that writes the buffer `a` in compute, and reads `b` in two steps.
+fn buffers(alias: bool) -> Graph {
+    let mut g = Graph::new();
+    let [a, b, c] = ["a", "b", "c"].map(|name| g.import_buffer(name, 64, Entry::Defined, Exit::Keep));
+    if alias {
+        g.may_alias_buffer(a, b).unwrap();
+    }
+    let a = g.add_fn("write", |p| p.storage_write_buffer(a, Intent::Overwrite)).unwrap();
+    let c = g
+        .add_fn("read", |p| {
+            p.uniform(b)?;
+            p.storage_write_buffer(c, Intent::Overwrite)
+        })
+        .unwrap();
+    let a = g
+        .add_fn("copy", |p| {
+            p.copy_source_buffer(c)?;
+            p.copy_target_buffer(a, Intent::Overwrite)
+        })
+        .unwrap();
+    g.add_fn("again", |p| {
+        p.uniform(b)?;
+        p.storage_write_buffer(a, Intent::Modify)
+    })
+    .unwrap();
+    g
+}
+
+/// A barrier of a buffer waits for uses of the buffers that may alias it.
+#[test]
+fn barriers_wait_for_aliases() {
+    let (mut plan, options) = (Plan::new(), Options::for_frame(8, 8));
+    for (alias, expected) in [(false, [None, None]), (true, [Some(0), Some(2)])] {
+        compile(&buffers(alias), &Caps::desktop(), &options, &mut Scratch::new(), &mut plan).unwrap();
+        let report = check::examine(&plan);
+        assert!(report.is_clean(), "{report}");
+        let b = plan.graph().find_resource("b").unwrap();
+        let of = |step| plan.barriers().iter().find(|x| x.resource == b && x.before.index() == step);
+        let after = |step| of(step).and_then(|x| x.after.some()).map(|s| s.index());
+        // The first write of `a` is overwritten: without aliases no pass needs it.
+        assert_eq!((plan.counts().culled, order(&plan)[0]), if alias { (0, "write") } else { (1, "read") });
+        assert_eq!(if alias { [after(1), after(3)] } else { [after(0), after(2)] }, expected);
+        assert!(!alias || of(3).unwrap().from_stages.contains(Stages::COPY), "{:?}", plan.barriers());
+    }
+    // The barrier of `a` waits for the read of `b`, which the write of `a` must not overtake.
+    let a = plan.graph().find_resource("a").unwrap();
+    let copy = plan.barriers().iter().find(|x| x.resource == a && x.before.index() == 2).unwrap();
+    assert_eq!((copy.after.index(), copy.from_stages), (1, Stages::COMPUTE));
+}
+
+/// The checker finds barriers that do not wait for an alias.
+#[test]
+fn a_barrier_that_forgets_an_alias_is_reported() {
+    let (mut plan, options) = (Plan::new(), Options::for_frame(8, 8));
+    compile(&buffers(true), &Caps::desktop(), &options, &mut Scratch::new(), &mut plan).unwrap();
+    let b = plan.graph().find_resource("b").unwrap();
+    let row = plan.barriers().iter().position(|x| x.resource == b && x.before.index() == 3).unwrap();
+    let mut broken = plan.clone();
+    internals::arrays(&mut broken).barriers[row].from_stages = Stages::NONE;
+    assert!(!check::examine(&broken).is_clean());
+    internals::arrays(&mut plan).barriers.remove(row);
+    assert!(!check::examine(&plan).is_clean());
+}
+
+/// Files hold the pairs, and only the flags that passes declare.
+#[cfg(feature = "files")]
+#[test]
+fn aliases_survive_a_file() {
+    use framegraph::file::{GraphFile, Registry, to_ron};
+    for g in [graph(Alias::First), buffers(true)] {
+        let text = to_ron(&g, "aliases", [8, 8]);
+        assert!(text.contains("MayAlias(of: \"a\", with: \"b\")") && !text.contains("flags"), "{text}");
+        let mut read = Graph::new();
+        GraphFile::parse("a.ron", &text).unwrap().declare(&[], &Registry::new(), &mut read).unwrap();
+        assert!(read.same_as(&g), "{}", to_ron(&read, "aliases", [8, 8]));
+    }
+    let mut g = graph(Alias::First);
+    let a = g.find_resource("a").unwrap();
+    g.add_fn("effect", |p| {
+        p.side_effect();
+        let b = p.texture("own", TextureDesc::new(Extent::FRAME, Format::R8Unorm));
+        p.color(b, Intent::Overwrite)
+    })
+    .unwrap();
+    assert_eq!(g.aliases_of(a).count(), 1);
+    assert_eq!(to_ron(&g, "", [0, 0]).matches("flags: [SideEffect]").count(), 1);
+    let text = "(version: 1, resources: [MayAlias(of: \"a\", with: \"b\"),
+        Buffer(name: \"a\", bytes: 4, kind: Import(entry: Defined, exit: Keep)),
+        Texture(name: \"b\", format: R8Unorm, kind: Import(entry: Defined, exit: Keep))])";
+    let refused = |text: &str| {
+        let parsed = GraphFile::parse("a.ron", text).unwrap();
+        parsed.declare(&[], &Registry::new(), &mut Graph::new()).unwrap_err().to_string()
+    };
+    assert!(refused(text).contains("an import is listed later; list `MayAlias` after both imports"));
+    let below =
+        text.replacen("MayAlias(of: \"a\", with: \"b\"),", "", 1).replace("])", ", MayAlias(of: \"a\", with: \"b\")])");
+    assert!(refused(&below).contains("both textures or both buffers"), "{}", refused(&below));
+}
+
+#[test]
+fn dumps_name_aliases() {
+    let plan = compiled(&graph(Alias::First));
+    assert!(dump::text(&plan).contains("imported, may alias b\n"), "{}", dump::text(&plan));
+    assert!(dump::json(&plan, "").contains("\"may_alias\": [\n"), "{}", dump::json(&plan, ""));
 }

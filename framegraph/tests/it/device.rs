@@ -147,17 +147,23 @@ fn a_slice_keeps_the_others() {
 
 #[test]
 fn bindings_are_counted() {
-    let textures: String = (0..17).map(|n| format!("Texture(name: \"t{n}\", format: Rgba8Unorm),")).collect();
-    let draws: String = (0..17)
+    let textures: String = (0..33).map(|n| format!("Texture(name: \"t{n}\", format: Rgba8Unorm),")).collect();
+    let draws: String = (0..33)
         .map(|n| format!("Raster(name: \"c{n}\", accesses: [Color(to: \"t{n}\", intent: Overwrite)]),"))
         .collect();
     let look = |count: usize| {
         let reads: String = (0..count).map(|n| format!("Sampled(of: \"t{n}\"),")).collect();
         format!("{draws} Raster(name: \"use\", accesses: [{reads} Color(to: \"screen\", intent: Overwrite)])")
     };
-    assert!(planned(&textures, &look(16)).is_ok());
-    let found = planned(&textures, &look(17)).map(|_| ()).expect_err("17 are too many");
-    assert!(found.contains("the pass uses 17 sampled textures, the device allows 16 in a shader stage"), "{found}");
+    // A raster pass reads in two stages, a compute pass in one.
+    assert!(planned(&textures, &look(32)).is_ok());
+    let compute = |count: usize| look(count).replace("Raster(name: \"use\"", "Compute(name: \"use\"");
+    let compute = |count| compute(count).replace("Color(to: \"screen\"", "StorageWrite(to: \"screen\"");
+    for (passes, count, max) in [(look(33), 33, 32), (compute(17), 17, 16)] {
+        let found = planned(&textures, &passes).map(|_| ()).expect_err("these are too many");
+        let expected = format!("the pass uses {count} sampled textures, the device allows {max} in its shader stages");
+        assert!(found.contains(&expected), "{found}");
+    }
 }
 
 /// An epilogue is part of its producer's shader, so both share the bindings of a stage.

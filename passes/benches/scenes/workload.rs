@@ -13,17 +13,51 @@ pub struct Workload {
     /// True if meshes and materials are combined at random, so that few nodes share both; otherwise each material has
     /// one mesh.
     pub mixed: bool,
+    /// Nodes that turn in each frame.
+    pub moving: Moving,
+}
+
+/// Nodes that move.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Moving {
+    None,
+    /// The first quarter of the nodes.
+    FirstQuarter,
+    /// Every fourth node.
+    EveryFourth,
 }
 
 impl Workload {
     /// Returns a scene of nodes that share mesh and material.
     pub const fn alike(nodes: usize) -> Self {
-        Self { nodes, meshes: 1, materials: 1, mixed: false }
+        Self { nodes, meshes: 1, materials: 1, mixed: false, moving: Moving::None }
     }
 
     pub fn name(&self) -> String {
         let Self { meshes, materials, mixed, .. } = self;
-        format!("{meshes} × {materials}{}", if *mixed { ", mixed" } else { "" })
+        let moving = match self.moving {
+            Moving::None => "",
+            Moving::FirstQuarter => ", the first quarter turns",
+            Moving::EveryFourth => ", every fourth turns",
+        };
+        format!("{meshes} × {materials}{}{moving}", if *mixed { ", mixed" } else { "" })
+    }
+
+    /// Turns the moving nodes, and returns their numbers.
+    pub fn turn(&self, scene: &mut Scene, frame: usize) -> Vec<usize> {
+        let moved: Vec<usize> = match self.moving {
+            Moving::None => Vec::new(),
+            Moving::FirstQuarter => (0..self.nodes / 4).collect(),
+            Moving::EveryFourth => (0..self.nodes).step_by(4).collect(),
+        };
+        for &number in &moved {
+            let instance = &mut scene.instances[number];
+            let turned = glam::DQuat::from_rotation_y((number + frame) as f64);
+            let at = instance.world_from_model.w_axis.truncate();
+            instance.world_from_model = DMat4::from_rotation_translation(turned, at);
+            instance.bounds = scene.meshes[instance.mesh.index()].bounds.transformed(&instance.world_from_model);
+        }
+        moved
     }
 
     /// Returns boxes of different sizes and colors in a cube, and a sun.

@@ -79,6 +79,7 @@ pub struct Color {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorDepth {
     /// Depth of a [`Prepass`](crate::effects::depth::prepass::Prepass). Surfaces are shaded where their depth is equal.
+    /// The radiance has its layers.
     Prepass(Texture),
     /// Depth of the color pass itself, of this size.
     Own(Extent),
@@ -133,20 +134,21 @@ impl Pass for Color {
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<ColorIo, DeclareError> {
         pass.takes_epilogue();
-        let (extent, depth) = match self.depth {
+        let (extent, layers, depth) = match self.depth {
             ColorDepth::Prepass(depth) if self.blended_depth && self.draws_blended() => {
-                (pass.desc(depth)?.extent, pass.depth(depth, Intent::Modify)?)
+                let TextureDesc { extent, layers, .. } = pass.desc(depth)?;
+                (extent, layers, pass.depth(depth, Intent::Modify)?)
             }
             ColorDepth::Prepass(depth) => {
-                let TextureDesc { extent, format, .. } = pass.desc(depth)?;
+                let TextureDesc { extent, format, layers, .. } = pass.desc(depth)?;
                 // Blended surfaces may write stencil.
                 let depth = match format.has_stencil() {
                     true => pass.depth(depth, Intent::Modify)?,
                     false => pass.depth_read_only(depth).map(|_| depth)?,
                 };
-                (extent, depth)
+                (extent, layers, depth)
             }
-            ColorDepth::Own(extent) => (extent, new_depth(pass, extent, self.samples, self.stencil)?),
+            ColorDepth::Own(extent) => (extent, 1, new_depth(pass, extent, self.samples, (self.stencil, 1))?),
         };
         let stencil = pass.desc(depth)?.format.has_stencil();
         let shadow = ShadowInput::declare(self.shadow, pass)?;
@@ -159,7 +161,7 @@ impl Pass for Color {
         if self.blended && self.draws_blended() {
             pass.blends();
         }
-        let desc = TextureDesc::new(extent, self.format);
+        let desc = TextureDesc::new(extent, self.format).layers(layers);
         let hdr = pass.target(self.into, "hdr", desc);
         // The background covers texels without surfaces. Samples at surface edges are covered one by one, so clear
         // them; this is free on tilers.

@@ -136,7 +136,7 @@ pub struct Post {
     pub hdr: Texture,
     /// Bloom, applied first. It is read at other pixels too, so the pass is not inlined.
     pub bloom: Option<BloomMix>,
-    /// Target. A new texture has the size of `hdr`, with 8 bits per channel after the last effect and half floats
+    /// Target. A new texture has the size and layers of `hdr`, with 8 bits per channel after the last effect and half floats
     /// before.
     pub into: Target,
     /// Settings of the effects.
@@ -186,13 +186,13 @@ impl Pass for Post {
         if bloom.is_none() {
             pass.pointwise();
         }
-        let extent = pass.desc(self.hdr)?.extent;
+        let TextureDesc { extent, layers, .. } = pass.desc(self.hdr)?;
         let hdr = pass.same_pixel(self.hdr)?;
         let (name, format) = match self.only {
             Some(effect) if effect != PostEffect::Encode => (effect.name(), HDR_FORMAT),
             _ => ("ldr", if self.for_fxaa { Format::Rgba8Unorm } else { Format::Rgba8UnormSrgb }),
         };
-        let into = pass.target(self.into, name, TextureDesc::new(extent, format));
+        let into = pass.target(self.into, name, TextureDesc::new(extent, format).layers(layers));
         Ok(PostIo { hdr, bloom, view: into.view_format(), ldr: pass.color(into, Intent::Overwrite)? })
     }
 }

@@ -61,7 +61,7 @@ where
     let depth = match drawn_depth(frame, handles) {
         Some(depth) => depth,
         None if resolution == Resolution::Full => structure,
-        None => frame.add("reflection_depth", Prepass { view, extent, samples: 1, stencil: false })?,
+        None => frame.add("reflection_depth", Prepass { view, extent, ..Prepass::default() })?,
     };
     let mut bounds = None;
     if settings.stride_texels <= 1.0 {

@@ -24,7 +24,10 @@ pub(super) fn prepass<W: AsRef<Programs> + AsRef<GpuScene> + AsRef<Views> + ?Siz
     if !drawn {
         return Ok(());
     }
-    let depth = frame.add("prepass", Prepass { view: handles.view(), extent: handles.extent(), samples, stencil })?;
+    let depth = frame.add(
+        "prepass",
+        Prepass { view: handles.view(), extent: handles.extent(), samples, stencil, layers: handles.layers() },
+    )?;
     handles.set(Slot::DEPTH, depth);
     if moving {
         handles.set(Slot::VELOCITY, frame.add("velocity", Velocity { view: handles.view(), depth })?);

@@ -13,7 +13,7 @@ use framegraph_scene::{Environment, Scene, SceneError, progress};
 use framegraph_wgpu::wgpu::{self, SurfaceTarget, TextureUsages};
 use framegraph_wgpu::{
     AdapterRequest, FrameError, FrameLoop, Gpu, OpenError, Pixels, ReadbackError, SurfaceError, WindowSurface,
-    format_of, read_texture,
+    format_of, read_texture, texture_2d,
 };
 use glam::DVec2;
 
@@ -281,16 +281,12 @@ impl SceneLoop {
 
 fn texture(gpu: &Gpu, size_px: [u32; 2]) -> wgpu::Texture {
     let [width, height] = size_px.map(|side| side.max(1));
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("picture"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8UnormSrgb,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    })
+    gpu.device.create_texture(&texture_2d(
+        "picture",
+        [width, height],
+        wgpu::TextureFormat::Rgba8UnormSrgb,
+        TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | TextureUsages::TEXTURE_BINDING,
+    ))
 }
 
 #[cfg(test)]

@@ -17,7 +17,8 @@ use crate::grading::Look;
 use crate::light::shading::Shading;
 use crate::settings::field::Field;
 use crate::settings::key_value::OptionError;
-use crate::settings::table::{SettingsTable, with_field};
+use crate::settings::table::{SettingsTable, method, unknown, with_field};
+use At::{Always, Optional};
 use framegraph_shaders::layout::EdgeFade;
 use std::sync::LazyLock;
 
@@ -33,11 +34,12 @@ pub struct Section {
     pub methods: Vec<&'static str>,
     /// Fields of the effect.
     pub rows: Vec<Row>,
-    choose: Choose,
+    /// True if the effect can be off.
+    pub is_optional: bool,
+    take: Set,
 }
 
-type Choose = Box<dyn Fn(&mut FrameSettings, &str) + Send + Sync>;
-type SetRow = Box<dyn Fn(&mut FrameSettings, &str) -> Result<(), OptionError> + Send + Sync>;
+type Set = Box<dyn Fn(&mut FrameSettings, &str) -> Result<(), OptionError> + Send + Sync>;
 type CheckRow = Box<dyn Fn(&FrameSettings) -> Option<(String, String)> + Send + Sync>;
 
 /// Field of an effect, for any type of settings.
@@ -58,14 +60,38 @@ pub struct Row {
     pub range: Option<[f64; 2]>,
     /// Default frame with the effect and the field.
     pub frame: FrameSettings,
-    set: SetRow,
+    set: Set,
     check: CheckRow,
 }
 
 impl Section {
-    /// Enables the effect with the defaults of a method.
-    pub fn choose(&self, frame: &mut FrameSettings, method: &str) {
-        (self.choose)(frame, method);
+    /// Sets the effect from text: `off`, a method with changes, such as `gtao:slices=4`, or changes alone if the effect
+    /// has no methods.
+    ///
+    /// # Errors
+    /// Fails for an unknown method or key, or an invalid value; the message names the accepted ones.
+    pub fn take(&self, frame: &mut FrameSettings, text: &str) -> Result<(), OptionError> {
+        (self.take)(frame, text)
+    }
+}
+
+impl FrameSettings {
+    /// Sets an effect by its option, such as `ao` to `gtao:slices=4`, or a field of the frame by its key, such as `msaa`
+    /// to `4`. The texts are those of the program `render`.
+    ///
+    /// # Errors
+    /// Fails for an unknown option or an invalid value; the message names the accepted ones.
+    pub fn set_option(&mut self, option: &str, text: &str) -> Result<(), OptionError> {
+        if let Some(section) = sections().iter().find(|section| !option.is_empty() && section.option == option) {
+            return section.take(self, text);
+        }
+        let rows = sections().iter().filter(|section| section.option.is_empty()).flat_map(|section| &section.rows);
+        match rows.clone().find(|row| row.key == option) {
+            Some(row) => row.set(self, text),
+            None => {
+                Err(unknown(option, sections().iter().map(|section| section.option).chain(rows.map(|row| row.key))))
+            }
+        }
     }
 }
 
@@ -100,46 +126,77 @@ impl Row {
 pub fn sections() -> &'static [Section] {
     static ALL: LazyLock<Vec<Section>> = LazyLock::new(|| {
         vec![
-            section::<FrameSettings>(|f| Some(f), |f, s| *f = s),
-            section::<LightSearch>(|f| Some(&mut f.lights), |f, s| f.lights = s),
-            section::<Settings>(|f| Some(&mut f.settings), |f, s| f.settings = s),
-            section::<Shading>(|f| Some(&mut f.settings.shading), |f, s| f.settings.shading = s),
-            section::<ShadowSettings>(|f| f.settings.shadows.as_mut(), |f, s| f.settings.shadows = Some(s)),
-            section::<OcclusionSettings>(|f| f.settings.occlusion.as_mut(), |f, s| f.settings.occlusion = Some(s)),
-            section::<ReflectionSettings>(|f| f.settings.reflections.as_mut(), |f, s| f.settings.reflections = Some(s)),
-            section::<TaaSettings>(|f| f.settings.taa.as_mut(), |f, s| f.settings.taa = Some(s)),
-            section::<Upscale>(|f| f.settings.upscale.as_mut(), |f, s| f.settings.upscale = Some(s)),
-            section::<FogSettings>(|f| f.settings.fog.as_mut(), |f, s| f.settings.fog = Some(s)),
-            section::<DofSettings>(|f| f.settings.dof.as_mut(), |f, s| f.settings.dof = Some(s)),
-            section::<BloomSettings>(|f| f.settings.bloom.as_mut(), |f, s| f.settings.bloom = Some(s)),
-            section::<Transparency>(|f| Some(&mut f.settings.transparency), |f, s| f.settings.transparency = s),
-            section::<PostSettings>(|f| Some(&mut f.settings.post), |f, s| f.settings.post = s),
-            section::<EdgeFade>(|f| f.settings.post.edge_fade.as_mut(), |f, s| f.settings.post.edge_fade = Some(s)),
-            section::<Look>(|f| Some(&mut f.settings.post.look), |f, s| f.settings.post.look = s),
+            section::<FrameSettings>(Always(|f| f)),
+            section::<LightSearch>(Always(|f| &mut f.lights)),
+            section::<Settings>(Always(|f| &mut f.settings)),
+            section::<Shading>(Always(|f| &mut f.settings.shading)),
+            section::<ShadowSettings>(Optional(|f| &mut f.settings.shadows)),
+            section::<OcclusionSettings>(Optional(|f| &mut f.settings.occlusion)),
+            section::<ReflectionSettings>(Optional(|f| &mut f.settings.reflections)),
+            section::<TaaSettings>(Optional(|f| &mut f.settings.taa)),
+            section::<Upscale>(Optional(|f| &mut f.settings.upscale)),
+            section::<FogSettings>(Optional(|f| &mut f.settings.fog)),
+            section::<DofSettings>(Optional(|f| &mut f.settings.dof)),
+            section::<BloomSettings>(Optional(|f| &mut f.settings.bloom)),
+            section::<Transparency>(Always(|f| &mut f.settings.transparency)),
+            section::<PostSettings>(Always(|f| &mut f.settings.post)),
+            section::<EdgeFade>(Optional(|f| &mut f.settings.post.edge_fade)),
+            section::<Look>(Always(|f| &mut f.settings.post.look)),
         ]
     });
     &ALL
 }
 
-type At<S> = fn(&mut FrameSettings) -> Option<&mut S>;
+/// Place of the settings of an effect.
+#[derive(Clone, Copy)]
+enum At<S> {
+    Always(fn(&mut FrameSettings) -> &mut S),
+    Optional(fn(&mut FrameSettings) -> &mut Option<S>),
+}
 
-fn section<S: SettingsTable>(at: At<S>, put: fn(&mut FrameSettings, S)) -> Section {
-    let choose: Choose = Box::new(move |frame, method| {
-        if let Some((_, settings)) = S::METHODS.iter().find(|(name, _)| *name == method) {
-            put(frame, *settings);
+impl<S: SettingsTable> At<S> {
+    fn find(self, frame: &mut FrameSettings) -> Option<&mut S> {
+        match self {
+            Always(at) => Some(at(frame)),
+            Optional(at) => at(frame).as_mut(),
         }
-    });
+    }
+
+    fn put(self, frame: &mut FrameSettings, settings: S) {
+        match self {
+            Always(at) => *at(frame) = settings,
+            Optional(at) => *at(frame) = Some(settings),
+        }
+    }
+
+    fn take(self, frame: &mut FrameSettings, text: &str) -> Result<(), OptionError> {
+        match self {
+            Optional(at) if text == "off" => *at(frame) = None,
+            _ if S::METHODS.is_empty() => {
+                let mut settings = self.find(frame).map_or(S::DEFAULT, |own| *own);
+                settings.set_all(text)?;
+                self.put(frame, settings);
+            }
+            Optional(_) => self.put(frame, method(text, &["off"])?),
+            Always(_) => self.put(frame, method(text, &[])?),
+        }
+        Ok(())
+    }
+}
+
+fn section<S: SettingsTable>(at: At<S>) -> Section {
     Section {
         option: S::OPTION,
         path: S::PATH,
         about: S::ABOUT,
         methods: S::METHODS.iter().map(|(name, _)| *name).collect(),
-        rows: S::FIELDS.iter().map(|field| row(field, at, put)).collect(),
-        choose,
+        rows: S::FIELDS.iter().map(|field| row(field, at)).collect(),
+        is_optional: matches!(at, Optional(_)),
+        take: Box::new(move |frame, text| at.take(frame, text)),
     }
 }
 
-fn row<S: SettingsTable>(field: &'static Field<S>, at: At<S>, put: fn(&mut FrameSettings, S)) -> Row {
+fn row<S: SettingsTable>(field: &'static Field<S>, at: At<S>) -> Row {
     let path = match (S::PATH, field.path) {
         (_, "") => String::new(),
         ("", own) => own.to_owned(),
@@ -147,7 +204,7 @@ fn row<S: SettingsTable>(field: &'static Field<S>, at: At<S>, put: fn(&mut Frame
     };
     let of = with_field(field);
     let mut frame = FrameSettings::DEFAULT;
-    put(&mut frame, of);
+    at.put(&mut frame, of);
     Row {
         key: field.key,
         path,
@@ -157,7 +214,7 @@ fn row<S: SettingsTable>(field: &'static Field<S>, at: At<S>, put: fn(&mut Frame
         alternatives: field.alternatives(&of),
         range: field.range(&of),
         frame,
-        set: Box::new(move |frame, text| at(frame).map_or(Ok(()), |settings| field.set(settings, text))),
-        check: Box::new(move |frame| at(&mut { *frame }).and_then(|settings| field.wrong(settings))),
+        set: Box::new(move |frame, text| at.find(frame).map_or(Ok(()), |settings| field.set(settings, text))),
+        check: Box::new(move |frame| at.find(&mut { *frame }).and_then(|settings| field.wrong(settings))),
     }
 }

@@ -116,10 +116,13 @@ impl DepthDraw<'_> {
     pub fn draw(&self, from: InstanceSource<'_>, programs: &Programs, cx: &mut Cx<'_>) -> Result<(), RecordError> {
         let Self { shader, interface, frame, depth, batches } = self;
         let of = |vertex, fragment| ProgramDesc { vertex, fragment, ..ProgramDesc::new(shader, interface) };
+        let stereo = cx.targets().layers > 1;
         let programs_of = [of("vs_opaque", None), of("vs_mask", Some("fs_mask"))];
         for (desc, batches) in programs_of.iter().zip(*batches) {
-            let program =
-                |variant: SurfaceVariant| programs.get(&ProgramDesc { features: &variant.vertex_features(), ..*desc });
+            let program = |variant: SurfaceVariant| {
+                let features = &variant.vertex_features().with_if(Feature::STEREO, stereo);
+                programs.get(&ProgramDesc { features, ..*desc })
+            };
             let surface = SurfaceDraw { program: &program, frame, constants: &[], depth: depth.clone(), colors: &[] };
             surface.draw(batches, from, cx)?;
         }

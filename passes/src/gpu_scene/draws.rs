@@ -31,18 +31,23 @@ impl ViewDraws {
     /// Returns the draws of visible instances and casters, with a level of detail for each instance.
     pub(crate) fn new(of: &Renderables, visible: &DrawLists, levels: &[u8], shadows: Option<&ViewShadows>) -> Self {
         let DrawLists { opaque, mask, transmit, blend, .. } = visible;
-        let mut numbers = Vec::with_capacity(2 * (opaque.len() + mask.len()) + transmit.len() + blend.len());
+        let maps = || shadows.iter().flat_map(|shadows| &shadows.maps).map(|map| &map.casters);
+        let drawn = if of.has_equal_groups() { 1 } else { 2 } * (opaque.len() + mask.len());
+        let cast = maps().map(|lists| lists.opaque.len() + lists.mask.len()).sum::<usize>();
+        let mut numbers = Vec::with_capacity(drawn + cast + transmit.len() + blend.len());
         let mut batches = |groups: &framegraph_scene::Groups, order, list: &[u32]| {
             DrawList::from(groups.batches(list, levels, order, &mut numbers))
         };
         let (surfaces, depths) = (of.surfaces(), of.depths());
         let depth = [opaque, mask].map(|list| batches(depths, BatchOrder::FirstFirst, list));
-        let shaded = [opaque, mask].map(|list| batches(surfaces, BatchOrder::FirstFirst, list));
+        let shaded = match of.has_equal_groups() {
+            true => depth.clone(),
+            false => [opaque, mask].map(|list| batches(surfaces, BatchOrder::FirstFirst, list)),
+        };
         let blended = batches(surfaces, BatchOrder::Kept, blend);
-        let maps = shadows.iter().flat_map(|shadows| &shadows.maps);
         let of_map =
             |lists: &DrawLists| [&lists.opaque, &lists.mask].map(|list| batches(depths, BatchOrder::ByGroup, list));
-        let casters = maps.map(|map| &map.casters).map(of_map).collect();
+        let casters = maps().map(of_map).collect();
         let first = numbers.len() as u32;
         numbers.extend_from_slice(transmit);
         let alone = |(first, instance): (u32, &u32)| Batch {

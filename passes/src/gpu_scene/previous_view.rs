@@ -59,16 +59,8 @@ mod tests {
             let seen = |eye: DVec3, ev100| {
                 let camera = Camera::look_at(home + eye, home + DVec3::NEG_Z * 4.0, DVec3::Y, projection)?;
                 let (size_px, lights) = ([16, 9], LightSearch::default());
-                let settings = ViewSettings {
-                    camera,
-                    size_px,
-                    ev100,
-                    environment_intensity: 1.0,
-                    shadows: None,
-                    lights,
-                    lod_error_px: 0.0,
-                    visible_layers: 1,
-                };
+                let settings =
+                    ViewSettings { camera, size_px, ev100, shadows: None, lights, ..ViewSettings::default() };
                 Ok::<_, Box<dyn std::error::Error>>(CameraView::empty(&settings))
             };
             let (before, now) = (seen(DVec3::ZERO, 3.0)?, seen(DVec3::new(1.0, 0.5, 0.2), 4.0)?);

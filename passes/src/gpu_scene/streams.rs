@@ -18,7 +18,7 @@ pub enum Instances<'a> {
         numbers: &'a Buffer,
         /// `layout::ObjectUniforms` by instance number.
         objects: &'a Buffer,
-        /// Origin of each instance's mesh relative to the eye, by instance number.
+        /// Reference points of objects relative to the eye.
         origins: &'a Buffer,
     },
 }

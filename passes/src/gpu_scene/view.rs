@@ -10,11 +10,13 @@ mod blended;
 mod gpu;
 mod levels;
 mod motion;
+mod stereo;
 
 pub use gpu::{GpuView, ViewId, Views};
 
 use crate::gpu_scene::draws::ViewDraws;
-use crate::gpu_scene::prepared::{Placements, PreparedScene};
+use crate::gpu_scene::placements::Placements;
+use crate::gpu_scene::prepared::PreparedScene;
 use crate::gpu_scene::previous_view::PreviousView;
 use crate::gpu_scene::punctual;
 use crate::gpu_scene::punctual::{LightLists, LightReport, LightSearch};
@@ -27,7 +29,7 @@ use crate::light::sun::{angular_radius_rad, halo_of, illuminance_lux, sun_of};
 use framegraph_scene::camera::exposure_from_ev100;
 use framegraph_scene::environment::{Sky, sun_light};
 use framegraph_scene::{Camera, DrawLists, Light, Projection, Scene, SunHalo};
-use framegraph_shaders::layout::{FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
+use framegraph_shaders::layout::{EyeUniforms, FrameUniforms, LightUniforms, MotionUniforms, SkyUniforms};
 use framegraph_shaders::reference::sky::Preetham;
 use glam::{DMat4, DVec2, DVec3, Mat4, Vec2, Vec3, Vec4};
 
@@ -142,7 +144,7 @@ pub struct CameraView {
     pub light_report: LightReport,
     /// Draw lists of the view.
     pub draws: ViewDraws,
-    /// Origin of each instance's mesh in m, relative to the eye.
+    /// Points that translations of instances are relative to, in m relative to the eye.
     pub origins: Vec<Vec4>,
     /// View-independent transforms of instances.
     pub placements: Placements,
@@ -165,6 +167,8 @@ pub struct CameraView {
     pub still_frames: u32,
     /// View of the previous frame ([`CameraView::after`]); `None` if it equals this one.
     pub earlier: Option<PreviousView>,
+    /// Left and right eye of a stereo view ([`CameraView::stereo`]); `None` for other views.
+    pub eyes: Option<[EyeUniforms; 2]>,
 }
 
 impl CameraView {
@@ -217,14 +221,14 @@ impl CameraView {
         let from_eye = |origin: &DVec3| (*origin - eye).as_vec3().extend(0.0);
         if !levels.is_empty() {
             settings.limit_levels(renderables, &visible, &mut levels);
-            self.shadows.iter_mut().for_each(|shadows| shadows.set_levels(&levels));
         }
+        self.shadows.iter_mut().for_each(|shadows| shadows.set_instances(prepared.placements(), &levels));
         let (draws, origins) = prepared.both(
             || {
                 let draws = ViewDraws::new(renderables, &visible, &levels, self.shadows.as_ref());
                 draws.indirect(|instance, level| prepared.mesh(instance, level))
             },
-            || renderables.origins().iter().map(from_eye).collect(),
+            || prepared.reference_points().iter().map(from_eye).collect(),
         );
         self.frame.blended = blended_range(renderables, &visible.blend, &settings.camera);
         let placements = prepared.placements().clone();
@@ -389,6 +393,7 @@ impl CameraView {
             jitter_px: DVec2::ZERO,
             still_frames: 0,
             earlier: None,
+            eyes: None,
         }
     }
 }

@@ -29,6 +29,14 @@ pub trait SettingsTable: Copy + PartialEq + 'static {
         }
     }
 
+    /// Checks fields against each other.
+    ///
+    /// # Errors
+    /// Fails if two fields contradict each other; the message names one of them and its accepted values.
+    fn check(&self) -> Result<(), OptionError> {
+        Ok(())
+    }
+
     /// Changes fields by text: `key=value,key=value`.
     ///
     /// # Errors
@@ -39,6 +47,14 @@ pub trait SettingsTable: Copy + PartialEq + 'static {
             self.set(key, value)?;
         }
         Ok(())
+    }
+
+    /// Parses a method with changes, such as `moments:precision=full`.
+    ///
+    /// # Errors
+    /// Fails for an unknown method, an unknown key or an invalid value; the message names it and the accepted ones.
+    fn parse(text: &str) -> Result<Self, OptionError> {
+        method(text, &[])
     }
 
     /// Parses `off`, or a method with changes, such as `sao:resolution=half,radius=0.5`. Returns `None` for `off`.
@@ -57,6 +73,7 @@ pub(crate) fn method<S: SettingsTable>(text: &str, others: &[&'static str]) -> R
     let names = || others.iter().copied().chain(S::METHODS.iter().map(|(name, _)| *name));
     let mut settings = found.ok_or_else(|| unknown(method, names()))?.1;
     settings.set_all(changes)?;
+    settings.check()?;
     Ok(settings)
 }
 

@@ -15,6 +15,8 @@ pub(super) const CALLER: &str = "the caller";
 pub struct Handles {
     view: ViewId,
     extent: Extent,
+    /// Number of layers of the view's pictures; 2 for both eyes of a stereo view.
+    layers: u16,
     slots: Vec<Held>,
     /// Stage that is being declared.
     stage: &'static str,
@@ -45,7 +47,22 @@ impl Default for Handles {
 impl Handles {
     /// Returns empty handles for a view with pictures of this size.
     pub fn for_view(view: ViewId, extent: Extent) -> Self {
-        Self { view, extent, slots: Vec::with_capacity(8), stage: CALLER, target: Target::New, shadow_view: None }
+        Self {
+            view,
+            extent,
+            layers: 1,
+            slots: Vec::with_capacity(8),
+            stage: CALLER,
+            target: Target::New,
+            shadow_view: None,
+        }
+    }
+
+    /// Returns handles for both eyes of a stereo view ([`CameraView::stereo`](crate::CameraView::stereo)), which are the
+    /// two layers of its pictures.
+    #[must_use]
+    pub fn stereo(self) -> Self {
+        Self { layers: 2, ..self }
     }
 
     /// Returns the handles with a texture set. For shadow maps use [`Handles::with_shadow_maps`].
@@ -108,6 +125,11 @@ impl Handles {
     /// Returns the size of the view's pictures.
     pub const fn extent(&self) -> Extent {
         self.extent
+    }
+
+    /// Returns the number of layers of the view's pictures: 2 for both eyes of a stereo view, otherwise 1.
+    pub const fn layers(&self) -> u16 {
+        self.layers
     }
 
     /// Returns the target for a stage that makes the picture ([`Stage::picture`](super::Stage::picture)): the frame's

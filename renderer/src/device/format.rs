@@ -3,6 +3,25 @@
 use framegraph::{Aspect, Format, Usage};
 use wgpu::{AstcBlock, AstcChannel, BufferUsages, TextureAspect, TextureFormat, TextureUsages};
 
+/// Returns the descriptor of a two-dimensional texture with one layer, one mip level and one sample per texel.
+pub fn texture_2d(
+    label: &str,
+    [width, height]: [u32; 2],
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> wgpu::TextureDescriptor<'_> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    }
+}
+
 /// Returns the wgpu format of the same name.
 pub const fn texture_format(format: Format) -> TextureFormat {
     use TextureFormat as T;

@@ -53,6 +53,12 @@ impl InspectTarget {
         format!("v{}.{name}", self.number)
     }
 
+    /// Returns width and height in texels for a frame size.
+    #[cfg(feature = "remote")]
+    pub(crate) fn size(&self, frame: [u32; 2]) -> [u32; 2] {
+        self.desc.mip_extent(frame, self.mip.into())
+    }
+
     pub(super) fn part(&self) -> Part {
         let Self { desc, mip, layer, aspect, sample, .. } = *self;
         Part { desc, mip, layer, aspect, sample }

@@ -40,6 +40,13 @@ impl Durations {
         }
     }
 
+    /// Returns the last measurement.
+    #[cfg(feature = "remote")]
+    pub(crate) fn last(&self) -> Option<f64> {
+        let index = if self.next > 0 { self.next - 1 } else { self.values.len().checked_sub(1)? };
+        self.values.get(index).copied()
+    }
+
     /// Removes all measurements.
     pub(crate) fn clear(&mut self) {
         self.values.clear();
@@ -81,6 +88,8 @@ mod tests {
         for i in 0..Durations::KEPT + 10 {
             samples.push(i as f64);
         }
+        #[cfg(feature = "remote")]
+        assert_eq!(samples.last(), Some((Durations::KEPT + 9) as f64));
         let summary = samples.summary();
         assert_eq!(summary.map(|s| (s.count, s.min_ms)), Some((Durations::KEPT, 10.0)));
     }

@@ -102,6 +102,18 @@ impl Timing {
         self.steps.get(step.index()).map(StepDurations::times).unwrap_or_default()
     }
 
+    /// Returns the last GPU and CPU time of a step, in milliseconds.
+    #[cfg(feature = "remote")]
+    pub(crate) fn last_of_step(&self, step: StepId) -> [Option<f64>; 2] {
+        self.steps.get(step.index()).map_or([None; 2], StepDurations::last)
+    }
+
+    /// Returns the last GPU and CPU time of the frame, in milliseconds.
+    #[cfg(feature = "remote")]
+    pub(crate) fn last_of_frame(&self) -> [Option<f64>; 2] {
+        self.frame.last()
+    }
+
     /// Returns the times of the whole frame. GPU time spans the first to the last timestamp.
     pub fn frame(&self) -> Times {
         self.frame.times()
@@ -254,6 +266,11 @@ impl Timing {
 impl StepDurations {
     fn times(&self) -> Times {
         Times { gpu: self.gpu.summary(), cpu: self.cpu.summary() }
+    }
+
+    #[cfg(feature = "remote")]
+    fn last(&self) -> [Option<f64>; 2] {
+        [self.gpu.last(), self.cpu.last()]
     }
 
     fn clear(&mut self) {

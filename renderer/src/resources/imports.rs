@@ -57,15 +57,18 @@ pub enum ImportError {
         /// Property that differs.
         mismatch: ImportMismatch,
     },
-    /// One texture is bound to two imports, and a pass writes one of them.
+    /// One texture or buffer is bound to two imports, and a pass writes one of them.
     #[error(
-        "the imports `{resource}` and `{other}` are bound to one texture; declare `Graph::may_alias`, or import it once"
+        "the imports `{resource}` and `{other}` are bound to one {}; declare `Graph::may_alias{}`, or import it once",
+        kind(*.is_buffer), if *.is_buffer { "_buffer" } else { "" }
     )]
     Shared {
         /// Imported resource.
         resource: Named<ResourceId>,
-        /// Other import with the same texture.
+        /// Other import with the same texture or buffer.
         other: Named<ResourceId>,
+        /// The imports are buffers.
+        is_buffer: bool,
     },
 }
 

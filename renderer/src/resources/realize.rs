@@ -128,14 +128,15 @@ impl Realized {
         Ok(())
     }
 
-    /// Refuses a texture behind two imports if a pass writes one of them, unless the graph declares that they may alias.
+    /// Refuses a texture or buffer behind two imports if a pass writes one of them, unless the graph declares that they may alias.
     ///
-    /// Imports of one texture that passes only read are allowed: a default texture may serve several of them.
+    /// Imports that passes only read are allowed: a default texture may serve several of them.
     fn check_shared(&self, plan: &Plan, changing: &[ResourceId]) -> Result<(), ImportError> {
         let graph = plan.graph();
-        let bound = |r: &ResourceId| match &self.resources[r.index()] {
-            Physical::Texture { texture, .. } => Some(texture),
-            _ => None,
+        let same = |a: ResourceId, b: ResourceId| match (&self.resources[a.index()], &self.resources[b.index()]) {
+            (Physical::Texture { texture: a, .. }, Physical::Texture { texture: b, .. }) => a == b,
+            (Physical::Buffer { buffer: a, .. }, Physical::Buffer { buffer: b, .. }) => a == b,
+            _ => false,
         };
         let imported = |r: &&ResourceId| matches!(graph.resources()[r.index()].kind, Kind::Imported { .. });
         let written = |resource: ResourceId| {
@@ -143,11 +144,11 @@ impl Realized {
             kept.flat_map(|pass| graph.accesses_of(pass)).any(|a| a.resource == resource && a.mode.writes())
         };
         for (at, resource) in changing.iter().enumerate().filter(|(_, r)| imported(r)) {
-            let Some(texture) = bound(resource) else { continue };
-            for other in changing[at + 1..].iter().filter(imported).filter(|r| bound(r) == Some(texture)) {
+            for other in changing[at + 1..].iter().filter(imported).filter(|r| same(*resource, **r)) {
                 if !graph.are_aliases(*resource, *other) && (written(*resource) || written(*other)) {
+                    let is_buffer = graph.resources()[resource.index()].desc.texture().is_none();
                     let [resource, other] = [*resource, *other].map(|r| Named::resource(plan, r));
-                    return Err(ImportError::Shared { resource, other });
+                    return Err(ImportError::Shared { resource, other, is_buffer });
                 }
             }
         }

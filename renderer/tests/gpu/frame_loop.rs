@@ -4,7 +4,9 @@ use crate::bench::{Bench, GREEN, RED, TestResult, fill_full, on_every_device};
 use framegraph::{
     Alias, Counts, DeclareError, Entry, Exit, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, Warning,
 };
-use framegraph_wgpu::{Cx, Frame, FrameError, FrameLoop, FramesInFlight, Imports, Record, RecordError, read_texture};
+use framegraph_wgpu::{
+    Cx, Frame, FrameError, FrameLoop, FramesInFlight, Imports, Record, RecordError, read_texture, texture_2d,
+};
 use std::num::NonZeroU32;
 
 /// Declares a chain of two passes into a texture of the caller.
@@ -21,16 +23,12 @@ fn declare(frame: &mut Frame<[f32; 4]>, imports: &mut Imports, image: &wgpu::Tex
 fn a_loop_continues_after_skipped_and_failed_frames() -> TestResult {
     on_every_device("a_loop_continues_after_skipped_and_failed_frames", |gpu, drawn| {
         let image = |side| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("image"),
-                size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            })
+            gpu.device.create_texture(&texture_2d(
+                "image",
+                [side, side],
+                wgpu::TextureFormat::Rgba8Unorm,
+                wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            ))
         };
         let (small, large) = (image(4), image(8));
         let mut frames = FrameLoop::<[f32; 4]>::new(gpu);

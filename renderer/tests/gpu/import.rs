@@ -1,21 +1,12 @@
 //! Imports: textures and buffers of the caller, drawn into, read, and rejected if they do not match.
 
-use crate::bench::{Bench, GREEN, SHOW, TestResult, draw_of, fill_corner, on_every_device};
+use crate::bench::{Bench, GREEN, RED, SHOW, TestResult, draw_of, fill_corner, fill_full, on_every_device};
 use framegraph::{Entry, Exit, Extent, Format, Intent, TextureDesc};
-use framegraph_wgpu::{Gpu, Raster, read_texture};
+use framegraph_wgpu::{Gpu, Raster, read_texture, texture_2d};
 use wgpu::{TextureFormat, TextureUsages};
 
 fn texture(gpu: &Gpu, side: u32, format: TextureFormat, usage: TextureUsages) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("mine"),
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
+    gpu.device.create_texture(&texture_2d("mine", [side, side], format, usage))
 }
 
 fn declare(frame: &mut framegraph_wgpu::Frame) -> Result<framegraph::Texture, framegraph::DeclareError> {
@@ -127,4 +118,83 @@ fn a_mismatched_import_is_an_error() -> TestResult {
     bench.imports.clear();
     bench.imports.texture_named("mine", &texture(&gpu, 8, TextureFormat::Rgba8Unorm, USES));
     bench.execute()
+}
+
+/// One texture behind two imports is refused if a pass writes one of them, unless the graph declares that they may alias.
+#[test]
+fn a_texture_behind_two_imports_is_refused_unless_they_may_alias() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+    let image = |bench: &mut Bench, writes: bool, aliases: bool| {
+        bench.declare(|frame| {
+            let graph = frame.graph_mut();
+            let read = graph.import_texture("read", desc, Entry::Defined, Exit::Keep);
+            let other = graph.import_texture("other", desc, Entry::Defined, Exit::Keep);
+            if aliases {
+                graph.may_alias(read, other)?;
+            }
+            let target = graph.texture("target", desc);
+            let declared = |p: &mut framegraph::PassBuilder<'_>| {
+                p.sampled(read)?;
+                p.sampled(other)?;
+                p.color(target, Intent::Overwrite)
+            };
+            let target = frame.add_fn("look", declared, |_, (), cx| fill_full(cx, RED))?;
+            frame.graph_mut().readback(target)?;
+            if writes {
+                frame.add_fn("draw", |p| p.color(other, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
+            }
+            Ok((read, other))
+        })
+    };
+    for (writes, aliases, refused) in [(true, false, true), (true, true, false), (false, false, false)] {
+        let mut bench = Bench::new(&gpu, 8, 8);
+        let (read, other) = image(&mut bench, writes, aliases)?;
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
+        let shared = texture(&gpu, 8, TextureFormat::Rgba8Unorm, usage);
+        bench.imports.texture(read, &shared).texture(other, &shared);
+        let done = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports).map(drop);
+        let told = done.map_err(|error| error.to_string()).err().unwrap_or_default();
+        let named = "the imports `read` and `other` are bound to one texture; declare `Graph::may_alias`";
+        assert_eq!(told.contains(named), refused, "writes: {writes}, aliases: {aliases}: {told}");
+        assert!(refused || told.is_empty(), "{told}");
+    }
+    Ok(())
+}
+
+/// One buffer behind two imports is refused like a texture.
+#[test]
+fn a_buffer_behind_two_imports_is_refused_unless_they_may_alias() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    let shared = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("shared"),
+        size: 64,
+        usage,
+        mapped_at_creation: false,
+    });
+    for aliases in [false, true] {
+        let mut bench = Bench::new(&gpu, 8, 8);
+        let (read, other) = bench.declare(|frame| {
+            let graph = frame.graph_mut();
+            let [read, other] = ["read", "other"].map(|n| graph.import_buffer(n, 64, Entry::Defined, Exit::Keep));
+            if aliases {
+                graph.may_alias_buffer(read, other)?;
+            }
+            let declared = |p: &mut framegraph::PassBuilder<'_>| {
+                p.side_effect();
+                p.kind(framegraph::PassKind::Compute)?;
+                p.uniform(read).map(drop)
+            };
+            frame.add_fn("look", declared, |_, (), _| Ok(()))?;
+            frame.add_fn("copy", |p| p.copy_target_buffer(other, Intent::Overwrite), |_, _, _| Ok(()))?;
+            Ok((read, other))
+        })?;
+        bench.imports.buffer(read, &shared).buffer(other, &shared);
+        let done = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports).map(drop);
+        let told = done.map_err(|error| error.to_string()).err().unwrap_or_default();
+        let named = "the imports `read` and `other` are bound to one buffer; declare `Graph::may_alias_buffer`";
+        assert!(if aliases { told.is_empty() } else { told.contains(named) }, "{told}");
+    }
+    Ok(())
 }

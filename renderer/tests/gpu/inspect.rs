@@ -7,7 +7,7 @@ use framegraph::{
 };
 use framegraph_wgpu::Frame;
 use framegraph_wgpu::inspect::{Inspection, Inspector, Texels, all_targets};
-use framegraph_wgpu::{Depth, Raster, read_texture};
+use framegraph_wgpu::{Depth, Raster, read_texture, texture_2d};
 
 const SIDE: u32 = 8;
 /// Half of the target has depth 0.25 and a color outside of 0…1, over a clear color.
@@ -242,16 +242,7 @@ fn inspection_does_not_change_imports() -> TestResult {
         })?;
         let uses = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let texture = |usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("mine"),
-                size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba16Float,
-                usage,
-                view_formats: &[],
-            })
+            gpu.device.create_texture(&texture_2d("mine", [SIDE, SIDE], wgpu::TextureFormat::Rgba16Float, usage))
         };
         let image = texture(uses | wgpu::TextureUsages::COPY_SRC);
         bench.imports.texture(mine, &image);

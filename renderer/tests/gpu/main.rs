@@ -25,6 +25,7 @@ mod random;
 mod raster;
 mod refusals;
 mod reload;
+mod remote;
 mod resolve;
 mod split_draws;
 mod steady;

@@ -62,10 +62,34 @@ fn binding_type(plan: &Plan, access: &Access) -> Option<BindingType> {
     }
 }
 
+/// Returns the limit that a binding counts to: sampled textures, storage textures, storage buffers, uniform buffers.
+const fn class(ty: BindingType) -> usize {
+    match ty {
+        BindingType::StorageTexture { .. } => 1,
+        BindingType::Buffer { ty: BufferBindingType::Storage { .. }, .. } => 2,
+        BindingType::Buffer { .. } => 3,
+        _ => 0,
+    }
+}
+
 /// Binds everything that the pass declares, and draws or dispatches.
 pub(crate) fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError> {
     let plan = cx.plan();
     let stage = if kind == PassKind::Compute { ShaderStages::COMPUTE } else { ShaderStages::FRAGMENT };
+    // A fragment shader binds what it writes, and as much as its limits allow. A vertex shader reads the rest.
+    let limits = cx.gpu().caps();
+    let left = |class| match class {
+        0 => limits.max_sampled_textures,
+        1 => limits.max_storage_textures,
+        2 => limits.max_storage_buffers,
+        _ => limits.max_uniform_buffers,
+    };
+    let mut left = [0, 1, 2, 3].map(left);
+    let writes = |id: framegraph::AccessId| {
+        let access = &plan.graph().accesses()[id.index()];
+        binding_type(plan, access).filter(|_| access.kind == AccessKind::StorageWrite)
+    };
+    cx.accesses().filter_map(writes).for_each(|ty| left[class(ty)] = left[class(ty)].saturating_sub(1));
     let (mut entries, mut bindings, mut vertices, mut indices) = (Vec::new(), Vec::new(), None, None);
     for id in cx.accesses() {
         let access = &plan.graph().accesses()[id.index()];
@@ -79,7 +103,13 @@ pub(crate) fn record(cx: &mut Cx<'_>, kind: PassKind) -> Result<(), RecordError>
         let bound = cx.resource_part(id, part)?;
         let number = entries.len() as u32;
         if let Some(ty) = binding_type(plan, access) {
-            entries.push(BindGroupLayoutEntry { binding: number, visibility: stage, ty, count: None });
+            let left = &mut left[class(ty)];
+            let in_vertex = kind == PassKind::Raster && access.kind != AccessKind::StorageWrite && *left == 0;
+            if access.kind != AccessKind::StorageWrite {
+                *left = left.saturating_sub(1);
+            }
+            let visibility = if in_vertex { ShaderStages::VERTEX } else { stage };
+            entries.push(BindGroupLayoutEntry { binding: number, visibility, ty, count: None });
             bindings.push((
                 number,
                 match &bound {

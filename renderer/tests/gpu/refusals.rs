@@ -3,7 +3,8 @@
 use crate::bench::{Bench, RED, SHOW, TestResult, draw_of, fill_full, on_every_device};
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
-    Binding, BindingReason, Cx, ExecuteError, Frame, Gpu, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
+    Binding, BindingReason, Cx, ExecuteError, Frame, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
+    texture_2d,
 };
 
 /// Two bind groups: constants, and a texture with its sampler.
@@ -210,14 +211,8 @@ fn an_unsupported_view_of_an_import_is_named() -> TestResult {
         let mut bench = Bench::new(gpu, 8, 8);
         for (formats, refused) in [(&[][..], true), (&[wgpu::TextureFormat::Rgba8UnormSrgb][..], false)] {
             let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("image"),
-                size: wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
                 view_formats: formats,
+                ..texture_2d("image", [8, 8], wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureUsages::TEXTURE_BINDING)
             });
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
             bench.declare(|frame| {
@@ -256,16 +251,12 @@ fn a_rejected_submission_names_the_import() -> TestResult {
             gpu.device.create_buffer(&size)
         };
         let image = || {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("theirs"),
-                size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
+            gpu.device.create_texture(&texture_2d(
+                "theirs",
+                [4, 4],
+                wgpu::TextureFormat::Rgba8Unorm,
+                wgpu::TextureUsages::TEXTURE_BINDING,
+            ))
         };
         let uses = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         // The resource that breaks the submission, and the one that the error names.
@@ -319,54 +310,4 @@ fn a_rejected_submission_names_the_import() -> TestResult {
         }
         Ok(())
     })
-}
-
-/// One texture behind two imports is refused if a pass writes one of them, unless the graph declares that they may alias.
-#[test]
-fn a_texture_behind_two_imports_is_refused_unless_they_may_alias() -> TestResult {
-    let gpu = Gpu::noop()?;
-    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
-    let image = |bench: &mut Bench, writes: bool, aliases: bool| {
-        bench.declare(|frame| {
-            let graph = frame.graph_mut();
-            let read = graph.import_texture("read", desc, Entry::Defined, Exit::Keep);
-            let other = graph.import_texture("other", desc, Entry::Defined, Exit::Keep);
-            if aliases {
-                graph.may_alias(read, other)?;
-            }
-            let target = graph.texture("target", desc);
-            let declared = |p: &mut framegraph::PassBuilder<'_>| {
-                p.sampled(read)?;
-                p.sampled(other)?;
-                p.color(target, Intent::Overwrite)
-            };
-            let target = frame.add_fn("look", declared, |_, (), cx| fill_full(cx, RED))?;
-            frame.graph_mut().readback(target)?;
-            if writes {
-                frame.add_fn("draw", |p| p.color(other, Intent::Overwrite), |_, (), cx| fill_full(cx, RED))?;
-            }
-            Ok((read, other))
-        })
-    };
-    for (writes, aliases, refused) in [(true, false, true), (true, true, false), (false, false, false)] {
-        let mut bench = Bench::new(&gpu, 8, 8);
-        let (read, other) = image(&mut bench, writes, aliases)?;
-        let shared = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("shared"),
-            size: wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
-        bench.imports.texture(read, &shared).texture(other, &shared);
-        let done = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports).map(drop);
-        let told = done.map_err(|error| error.to_string()).err().unwrap_or_default();
-        let named = "the imports `read` and `other` are bound to one texture; declare `Graph::may_alias`";
-        assert_eq!(told.contains(named), refused, "writes: {writes}, aliases: {aliases}: {told}");
-        assert!(refused || told.is_empty(), "{told}");
-    }
-    Ok(())
 }

@@ -6,7 +6,7 @@ use crate::bench::{
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
     Cx, Executor, ExecutorOptions, Frame, FrameCommands, FrameLoop, Imports, ObjectCounts, PipelineCacheError, Raster,
-    RecordError, Shader, ShaderError, read_texture,
+    RecordError, Shader, ShaderError, read_texture, texture_2d,
 };
 use std::cell::Cell;
 
@@ -57,16 +57,12 @@ fn a_frame_is_submitted_with_commands_of_the_caller() -> TestResult {
 fn a_recorded_frame_is_submitted_between_other_commands() -> TestResult {
     on_every_device("a_recorded_frame_is_submitted_between_other_commands", |gpu, drawn| {
         let mut frames = FrameLoop::<()>::new(gpu);
-        let image = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("image"),
-            size: wgpu::Extent3d { width: 64, height: 2, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let image = gpu.device.create_texture(&texture_2d(
+            "image",
+            [64, 2],
+            wgpu::TextureFormat::Rgba8Unorm,
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        ));
         let declare = |frame: &mut Frame, imports: &mut Imports| {
             let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
             let into = frame.graph_mut().import_texture("image", desc, Entry::Defined, Exit::Keep);

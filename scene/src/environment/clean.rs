@@ -37,8 +37,7 @@ impl Cleaning {
         let mut warnings = Vec::new();
         if self.negative > 0 {
             warnings.push(format!(
-                "{file}: {} of {texels} texels had negative radiance (lowest {}) and were clamped \
-                 to 0",
+                "{file}: {} of {texels} texels had negative radiance (lowest {}) and were clamped to 0",
                 self.negative, self.lowest
             ));
         }

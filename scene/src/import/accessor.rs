@@ -178,8 +178,7 @@ fn array<'a>(
         source.malformed(
             at,
             format!(
-                "{count} elements of {size} bytes every {stride} from {offset} exceed buffer \
-                     view {view} of {} bytes",
+                "{count} elements of {size} bytes every {stride} from {offset} exceed buffer view {view} of {} bytes",
                 bytes.len()
             ),
         )

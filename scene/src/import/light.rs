@@ -102,8 +102,7 @@ fn kind(json: &JsonLight, at: &str, warnings: &mut Warnings) -> Result<LightKind
             let inner_cone_rad = inner.min(outer_cone_rad * 0.999);
             if (inner_cone_rad, outer_cone_rad) != (inner, outer) {
                 warnings.push(format!(
-                    "{at}: its cone angles {inner} and {outer} were clamped to {inner_cone_rad} \
-                     and {outer_cone_rad}"
+                    "{at}: its cone angles {inner} and {outer} were clamped to {inner_cone_rad} and {outer_cone_rad}"
                 ));
             }
             LightKind::Spot { intensity_candela: strength, range_m, inner_cone_rad, outer_cone_rad }

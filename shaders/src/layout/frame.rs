@@ -46,24 +46,37 @@ pub struct FrameUniforms {
     pub blended: Vec4,
 }
 
+/// One eye of a stereo view. Positions are relative to the origin of the view's [`FrameUniforms`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct EyeUniforms {
+    /// World-to-clip matrix, reversed-Z.
+    pub clip_from_world: Mat4,
+    /// Perspective: (position in m, 1). Orthographic: (unit vector toward the viewer, 0).
+    pub camera: Vec4,
+}
+
 #[cfg(test)]
 pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
-    vec![layout_of!(FrameUniforms {
-        world_from_clip,
-        clip_from_world,
-        world_from_view,
-        camera,
-        sun_direction,
-        sun_angular_radius,
-        sun_illuminance,
-        exposure,
-        viewport_size_px,
-        environment_rotation,
-        environment_scale,
-        light_count,
-        specular_scale,
-        roughness_one_lod,
-        sh,
-        blended,
-    })]
+    vec![
+        layout_of!(FrameUniforms {
+            world_from_clip,
+            clip_from_world,
+            world_from_view,
+            camera,
+            sun_direction,
+            sun_angular_radius,
+            sun_illuminance,
+            exposure,
+            viewport_size_px,
+            environment_rotation,
+            environment_scale,
+            light_count,
+            specular_scale,
+            roughness_one_lod,
+            sh,
+            blended,
+        }),
+        layout_of!(EyeUniforms { clip_from_world, camera }),
+    ]
 }

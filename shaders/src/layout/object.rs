@@ -7,8 +7,7 @@ use glam::{DMat3, DVec3, Mat4, Vec3, Vec4};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ObjectUniforms {
-    /// Model-to-world matrix without the translation. The translation depends on the eye, and shaders read it from
-    /// `origins`.
+    /// Model-to-world matrix. Its translation is relative to the object's reference point, in m.
     pub world_from_model: Mat4,
     /// First column of the normal matrix: cofactors of the upper 3×3, scaled to a largest entry of one, times the sign
     /// of the determinant.
@@ -21,8 +20,8 @@ pub struct ObjectUniforms {
     pub material: u32,
     /// Third column of the normal matrix.
     pub normal_column_z: Vec3,
-    /// Padding to 16 bytes; zero.
-    pub _pad: f32,
+    /// Index of the reference point in `origins`.
+    pub reference_point: u32,
 }
 
 /// Transform and position of an object, as an element of the instance stream.
@@ -69,7 +68,7 @@ impl ObjectAttributes {
 }
 
 impl ObjectUniforms {
-    /// Packs a transform, with material index 0.
+    /// Packs a transform, with material and reference point 0.
     ///
     /// Normals are transformed by the cofactors of the upper 3×3, which exist even without an inverse transpose: a
     /// flattened object keeps the normal of its plane. The cofactors are computed in f64 from the matrix divided by its
@@ -88,7 +87,7 @@ impl ObjectUniforms {
             normal_column_y: normal.y_axis.as_vec3(),
             material: 0,
             normal_column_z: normal.z_axis.as_vec3(),
-            _pad: 0.0,
+            reference_point: 0,
         }
     }
 }
@@ -109,7 +108,7 @@ pub(super) fn layouts() -> Vec<crate::reflect::StructLayout> {
         normal_column_y,
         material,
         normal_column_z,
-        _pad,
+        reference_point,
     })]
 }
 

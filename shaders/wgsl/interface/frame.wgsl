@@ -47,6 +47,14 @@ struct FrameUniforms {
     blended: vec4<f32>,
 }
 
+/// Data of one eye of a stereo view. Mirrored by `layout::EyeUniforms`.
+struct EyeUniforms {
+    /// World-to-clip matrix of the eye.
+    clip_from_world: mat4x4<f32>,
+    /// As in `FrameUniforms`.
+    camera: vec4<f32>,
+}
+
 /// Punctual light. Mirrored by `layout::LightUniforms`.
 struct LightUniforms {
     /// Position in m, world space; unused by directional lights.
@@ -78,6 +86,9 @@ const LIGHT_POINT: u32 = 1u;
 const LIGHT_SPOT: u32 = 2u;
 
 @group(0) @binding(0) var<uniform> frame: FrameUniforms;
+/// Left and right eye. Positions are relative to the origin of `frame` for both.
+@if(STEREO)
+@group(0) @binding(53) var<uniform> eyes: array<EyeUniforms, 2>;
 @group(0) @binding(1) var<storage, read> lights: array<LightUniforms>;
 /// Equirectangular radiance of the visible environment, linear Rec.709.
 @group(0) @binding(4) var environment_map: texture_2d<f32>;

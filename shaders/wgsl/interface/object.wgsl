@@ -3,12 +3,13 @@
 // object. Mesa's software driver reads buffers per vertex, but this stream once.
 
 import package::interface::frame::frame;
+@if(STEREO)
+import package::interface::frame::eyes;
 import package::lib::numerics::normalize_or;
 
 /// Transform of an object. Mirrored by `layout::ObjectUniforms`.
 struct ObjectUniforms {
-    /// Model-to-world matrix without the translation, which depends on the eye: its last column is
-    /// that of the identity.
+    /// Model-to-world matrix. Its translation is relative to the object's reference point, in m.
     world_from_model: mat4x4<f32>,
     /// Columns of the normal matrix: cofactors of the upper 3×3, scaled to a largest entry of one,
     /// times the sign of the determinant. Cofactors exist even without an inverse (hard case 38).
@@ -19,11 +20,13 @@ struct ObjectUniforms {
     /// Index of its material.
     material: u32,
     normal_column_z: vec3<f32>,
+    /// Index of the reference point in `origins`.
+    reference_point: u32,
 }
 
 @if(!INSTANCE_STREAM)
 @group(2) @binding(0) var<storage, read> objects: array<ObjectUniforms>;
-/// Origin of each object's mesh, in m; xyz.
+/// Reference points of objects relative to the eye, in m; xyz.
 @if(!INSTANCE_STREAM)
 @group(2) @binding(1) var<storage, read> origins: array<vec4<f32>>;
 
@@ -31,6 +34,9 @@ struct ObjectUniforms {
 @if(INSTANCE_STREAM)
 struct Instance {
     @location(6) number: u32,
+    /// Eye that is drawn.
+    @if(STEREO)
+    @builtin(view_index) eye: u32,
     /// Columns of the model-to-world matrix, in m.
     @location(8) column_x: vec4<f32>,
     @location(9) column_y: vec4<f32>,
@@ -46,6 +52,9 @@ struct Instance {
 @else
 struct Instance {
     @location(6) number: u32,
+    /// Eye that is drawn.
+    @if(STEREO)
+    @builtin(view_index) eye: u32,
 }
 
 /// Returns the model-to-world matrix, in m.
@@ -59,9 +68,9 @@ fn world_from_model(instance: Instance) -> mat4x4<f32> {
 
 @else
 fn world_from_model(instance: Instance) -> mat4x4<f32> {
-    let turned = objects[instance.number].world_from_model;
-    let origin = vec4<f32>(origins[instance.number].xyz, 1.0);
-    return mat4x4<f32>(turned[0], turned[1], turned[2], origin);
+    let placed = objects[instance.number].world_from_model;
+    let origin = origins[objects[instance.number].reference_point].xyz + placed[3].xyz;
+    return mat4x4<f32>(placed[0], placed[1], placed[2], vec4<f32>(origin, 1.0));
 }
 
 /// Returns the normal matrix.
@@ -110,7 +119,13 @@ fn world_position(position: vec3<f32>, instance: Instance) -> vec3<f32> {
 
 /// Returns the clip position of a world position. Depth prepass and color pass must agree to the
 /// bit, because the depth test is Equal. Both use this function and mark their output @invariant.
-fn clip_position(world: vec3<f32>) -> vec4<f32> {
+@if(STEREO)
+fn clip_position(world: vec3<f32>, instance: Instance) -> vec4<f32> {
+    return eyes[instance.eye].clip_from_world * vec4<f32>(world, 1.0);
+}
+
+@else
+fn clip_position(world: vec3<f32>, instance: Instance) -> vec4<f32> {
     return frame.clip_from_world * vec4<f32>(world, 1.0);
 }
 

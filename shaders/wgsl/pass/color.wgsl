@@ -49,7 +49,6 @@ import package::lib::moment_transparency::{
 };
 import package::lib::numerics::{normalize_or, saturate_half3};
 import package::lib::real::{real, real2, real3, to_real3};
-import package::lib::specular_aa::normal_filtering;
 import package::lib::standard_surface::{StandardSurface, clamp_nov};
 @if(IRIDESCENCE)
 import package::lib::thin_film::f0_from_reflectance;
@@ -64,10 +63,8 @@ import package::shading::through::is_behind;
 import package::shading::through::{translucency_of, far_side};
 import package::shading::micro_shadow::micro_visibility;
 import package::shading::object_light::takes_sun;
-import package::shading::quality::{
-    ROUGHNESS_FLOOR, F90_FADES, PUNCTUAL_COMPENSATION,
-    SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD,
-};
+import package::shading::quality::{F90_FADES, PUNCTUAL_COMPENSATION, ROUGHNESS_FLOOR};
+import package::shading::roughness::shaded_roughness;
 import package::shading::punctual::add_punctual;
 import package::shading::shadow::{sun_share, sun_visibility, cascade_tint};
 import package::shading::shadow_catcher::caught_shadow;
@@ -89,6 +86,8 @@ import package::shading::vertex::{
     SurfaceVertex, surface_vertex, face_sign, geometric_normal, smooth_normal, shading_normal,
     texture_uv, vertex_color,
 };
+@if(STEREO)
+import package::shading::vertex::toward_eye;
 @if(CLEAR_COAT && TEXTURED)
 import package::shading::vertex::mapped_normal;
 
@@ -101,8 +100,7 @@ override ALPHA_MODE: u32 = 0u;
 override SUN: bool = true;
 
 /// True if the material specifies its reflectance at grazing incidence, which then does not fade.
-/// This is a constant instead of an `@if` at its use, because all variants must have the same
-/// overrides.
+/// A constant instead of an `@if` at its use: all variants must have the same overrides.
 @if(SPECULAR)
 const F90_IS_GIVEN: bool = true;
 @else
@@ -119,18 +117,6 @@ fn vs_main(
     @location(5) color: vec4<f32>,
 ) -> SurfaceVertex {
     return surface_vertex(instance, position, normal, tangent, vec4<f32>(uv0, uv1), color);
-}
-
-/// Returns the perceptual roughness for shading: at least the floor, increased by the variation of
-/// the normal within the pixel.
-fn shaded_roughness(roughness: f32, smooth_side: vec3<f32>) -> f32 {
-    var r = clamp(roughness, ROUGHNESS_FLOOR, 1.0);
-    if SPECULAR_AA_VARIANCE > 0.0 {
-        let dx = dpdx(smooth_side);
-        let dy = dpdy(smooth_side);
-        r = normal_filtering(r, dx, dy, SPECULAR_AA_VARIANCE, SPECULAR_AA_THRESHOLD);
-    }
-    return r;
 }
 
 /// Returns the clear coat of a fragment.
@@ -197,7 +183,8 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     let smooth_side = smooth_normal(vertex, geometric, side);
     var roughness = shaded_roughness(metal_rough.y, smooth_side);
     let normal = shading_normal(vertex, smooth_side, side);
-    let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
+    @if(STEREO) let to_viewer = toward_eye(vertex);
+    @else let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
     let view = normalize_or(to_viewer, normal);
     let nov = clamp_nov(real(dot(normal, view)));
     let color = to_real3(base);
@@ -346,9 +333,8 @@ fn seen_color(vertex: SurfaceVertex, front_facing: bool) -> vec4<f32> {
     if material_has(TRAIT_SHADOW_CATCHER) {
         seen *= caught;
     }
-    @if(FOG) seen = in_fog(
-        seen, normalize_or(vertex.world, vec3<f32>(0.0, 0.0, 1.0)), length(vertex.world),
-    );
+    @if(FOG) seen =
+        in_fog(seen, normalize_or(vertex.world, vec3<f32>(0.0, 0.0, 1.0)), length(vertex.world));
     return seen;
 }
 

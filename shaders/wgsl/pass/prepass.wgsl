@@ -23,7 +23,7 @@ fn vs_opaque(
     instance: Instance,
     @location(0) position: vec3<f32>,
 ) -> OpaqueVertex {
-    return OpaqueVertex(clip_position(world_position(position, instance)));
+    return OpaqueVertex(clip_position(world_position(position, instance), instance));
 }
 
 /// Alpha-masked geometry.
@@ -36,7 +36,7 @@ fn vs_mask(
     @location(5) color: vec4<f32>,
 ) -> MaskVertex {
     return MaskVertex(
-        clip_position(world_position(position, instance)),
+        clip_position(world_position(position, instance), instance),
         vec4<f32>(uv0, uv1),
         color.a,
     );

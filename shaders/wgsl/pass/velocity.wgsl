@@ -34,7 +34,7 @@ fn vs_main(
     @location(7) earlier: vec3<f32>,
 ) -> VelocityVertex {
     return VelocityVertex(
-        clip_position(world_position(position, instance)),
+        clip_position(world_position(position, instance), instance),
         (motions[instance.number].clip_from_model * vec4<f32>(position, 1.0)).xyw,
         (motions[instance.number].earlier_clip_from_model * vec4<f32>(earlier, 1.0)).xyw,
         vec4<f32>(uv0, uv1),

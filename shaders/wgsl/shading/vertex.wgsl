@@ -3,6 +3,8 @@
 // Without the feature TEXTURED there are no texture coordinates, and tangents exist only for
 // anisotropy. VERTEX_COLORS: the mesh has colors.
 
+@if(STEREO)
+import package::interface::frame::eyes;
 import package::interface::object::{
     Instance, world_position, clip_position, world_normal, world_tangent, handedness,
 };
@@ -35,6 +37,9 @@ struct SurfaceVertex {
     /// Index of the material.
     @if(MATERIAL_TABLE)
     @location(6) @interpolate(flat) material: u32,
+    /// Eye that is drawn.
+    @if(STEREO)
+    @location(7) @interpolate(flat) eye: u32,
 }
 
 /// Returns the output for a vertex; `uv` holds both sets of texture coordinates.
@@ -48,7 +53,7 @@ fn surface_vertex(
 ) -> SurfaceVertex {
     let world = world_position(position, instance);
     var vertex: SurfaceVertex;
-    vertex.position = clip_position(world);
+    vertex.position = clip_position(world, instance);
     vertex.world = world;
     vertex.normal = world_normal(normal, instance);
     @if(TEXTURED || ANISOTROPY)
@@ -58,8 +63,16 @@ fn surface_vertex(
     @if(VERTEX_COLORS) vertex.color = color;
     @if(TRANSMISSION || DIFFUSE_TRANSMISSION)
     vertex.scale_m = mesh_scale_m(instance);
+    @if(STEREO) vertex.eye = instance.eye;
     @if(MATERIAL_TABLE) vertex.material = material_number(instance);
     return vertex;
+}
+
+/// Returns the vector toward the eye that is drawn: of any length, and in m for a perspective.
+@if(STEREO)
+fn toward_eye(vertex: SurfaceVertex) -> vec3<f32> {
+    let camera = eyes[vertex.eye].camera;
+    return camera.xyz - camera.w * vertex.world;
 }
 
 /// Returns both sets of texture coordinates, or zeros without textures.

@@ -80,10 +80,9 @@ pub const UNNOTICED: &[(&str, &str, &str)] = &[
     ("vignette::edge_share", "saturate(abs(from_middle) * shape.x * vec2<f32>(shape.y, 1.0))", TWICE),
     (
         "aces::tone_aces",
-        "clamp(vec3<f32>( dot(ap0, vec3<f32>(1.45143932, -0.23651075, -0.21492857)), \
-         dot(ap0, vec3<f32>(-0.07655377, 1.17622970, -0.09967593)), \
-         dot(ap0, vec3<f32>(0.00831615, -0.00603245, 0.99771630)), \
-         ), vec3<f32>(0.0), vec3<f32>(65504.0))",
+        "clamp(vec3<f32>( dot(ap0, vec3<f32>(1.45143932, -0.23651075, -0.21492857)), dot(ap0, vec3<f32>(-0.07655377, \
+         1.17622970, -0.09967593)), dot(ap0, vec3<f32>(0.00831615, -0.00603245, 0.99771630)), ), vec3<f32>(0.0), \
+         vec3<f32>(65504.0))",
         ROUNDING,
     ),
 ];

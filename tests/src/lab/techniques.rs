@@ -11,6 +11,7 @@ mod terms;
 
 use super::studio::{Setup, Truth};
 use super::technique::{Choice, Measured, Outcome, Subject, Technique};
+use framegraph_passes::frame::tables::sections;
 use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_passes::{FrameSettings, LightSearch, PostSettings, Quality, Settings};
 use framegraph_wgpu::Gpu;
@@ -45,14 +46,49 @@ fn nowhere(_: &FrameSettings) -> bool {
     false
 }
 
-type Change = fn(&mut Setup);
+/// Change of a frame.
+enum Change {
+    /// Options of the program `render`, such as `ao=gtao:slices=4`, separated by blanks.
+    Options(&'static str),
+    /// Function, for parts of a frame that no table has, such as the environment.
+    Function(fn(&mut Setup)),
+}
+
+use Change::{Function, Options};
+
+impl Change {
+    fn apply(&self, setup: &mut Setup) {
+        match self {
+            Function(change) => change(setup),
+            Options(text) => text.split(' ').filter(|text| !text.is_empty()).for_each(|text| set(setup, text)),
+        }
+    }
+}
+
+/// Sets an option of the program `render` in a frame, such as `ao=gtao`, or one setting of an effect, such as
+/// `ao.radius=0.5`.
+fn set(setup: &mut Setup, text: &str) {
+    let (option, value) = text.split_once('=').unwrap_or((text, ""));
+    let mut frame = FrameSettings { lights: setup.lights, settings: setup.settings, ..FrameSettings::DEFAULT };
+    let changed = match option.split_once('.') {
+        None => frame.set_option(option, value),
+        Some((effect, key)) => {
+            let section = sections().iter().find(|section| section.option == effect);
+            let row = section.and_then(|section| section.rows.iter().find(|row| row.key == key));
+            row.unwrap_or_else(|| panic!("{option} is no setting")).set(&mut frame, value)
+        }
+    };
+    changed.unwrap_or_else(|error| panic!("{text}: {error}"));
+    (setup.lights, setup.settings) = (frame.lights, frame.settings);
+}
+
 type IsIn = fn(&FrameSettings) -> bool;
 
 /// Creates a technique whose options are compared as pictures.
 fn pictures(name: &str, what: &str, truth: (&str, Truth), base: Setup, choices: &[(&str, Change, IsIn)]) -> Technique {
     let choice = |(name, change, is_in): &(&str, Change, IsIn)| {
         let mut setup = base;
-        change(&mut setup);
+        change.apply(&mut setup);
         Choice {
             name: (*name).to_owned(),
             subject: Subject::Picture,

@@ -11,7 +11,7 @@ use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::grading::Look;
 use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::light::shading::LightSettings;
-use framegraph_passes::{CameraView, LightSearch, Lighting, PostSettings, Settings, Shading, World, standard};
+use framegraph_passes::{CameraView, Lighting, PostSettings, Settings, Shading, World, standard};
 use framegraph_scene::texture::{Image, Sampler, TextureRole, TextureSlot, UvTransform};
 use framegraph_scene::{Aabb, Camera, Environment, Light, Material, Mesh, Projection, Scene, progress};
 use framegraph_shaders::layout::ToneMap;
@@ -187,11 +187,8 @@ impl Board {
             camera: self.camera()?,
             size_px: self.size_px(),
             ev100: (1.0 / (1.2 * EXPOSURE as f32)).log2(),
-            environment_intensity: 1.0,
             shadows: self.shadows,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
+            ..ViewSettings::default()
         };
         Ok(CameraView::new(&self.placed(), &lighting.image, &Background::Environment, &moment))
     }

@@ -62,9 +62,8 @@ impl Form {
 /// Returns a case of `d_ggx_cross` with the textbook's formula: k = alpha / (1 - noh² + noh²·alpha²) and D = k²/π. The
 /// square is computed in f32, so that it does not overflow.
 pub fn textbook(cross: Case) -> Case {
-    const K: &str = "real(x[6]) / (1.0 - dot(real3(v3(0u)), real3(v3(3u))) * dot(real3(v3(0u)), real3(v3(3u))) \
-                     + dot(real3(v3(0u)), real3(v3(3u))) * dot(real3(v3(0u)), real3(v3(3u))) \
-                     * real(x[6]) * real(x[6]))";
+    const K: &str = "real(x[6]) / (1.0 - dot(real3(v3(0u)), real3(v3(3u))) * dot(real3(v3(0u)), real3(v3(3u))) + \
+                     dot(real3(v3(0u)), real3(v3(3u))) * dot(real3(v3(0u)), real3(v3(3u))) * real(x[6]) * real(x[6]))";
     Case { call: K, results: &["f32(r) * f32(r) * 0.31830988"], ..cross }
 }
 

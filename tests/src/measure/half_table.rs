@@ -10,9 +10,7 @@ use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::light::shading::LightSettings;
-use framegraph_passes::{
-    CameraView, LightSearch, Lighting, PostSettings, Precision, Settings, Shading, World, standard,
-};
+use framegraph_passes::{CameraView, Lighting, PostSettings, Precision, Settings, Shading, World, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_shader_mirrors::cases::{self, Case, Deviation};
@@ -97,12 +95,8 @@ impl Studio {
         let moment = ViewSettings {
             camera: scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1])),
             size_px,
-            ev100: 14.5,
-            environment_intensity: 1.0,
             shadows: settings.shadows,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
+            ..ViewSettings::default()
         };
         let view = CameraView::new(&scene, &lighting.image, &Background::Environment, &moment);
         let settings = settings.for_scene(&scene, size_px);

@@ -56,16 +56,7 @@ impl Night {
         let light = LightSettings { image, dfg: DfgSettings { texels: 32, visibility: settings.shading.table } };
         let dark = Environment::uniform(DVec3::ZERO)?;
         let lighting = Lighting::new(gpu, &dark, &light, &light_cache(), &mut progress::silent)?;
-        let seen = ViewSettings {
-            camera,
-            size_px,
-            ev100: 3.0,
-            environment_intensity: 1.0,
-            shadows: settings.shadows,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
-        };
+        let seen = ViewSettings { camera, size_px, ev100: 3.0, shadows: settings.shadows, ..ViewSettings::default() };
         let view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
         let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
         Ok(Self { scene, seen, settings, world })

@@ -8,15 +8,15 @@ use framegraph_passes::effects::depth::structure::{Resolution, StructureLevel, s
 use framegraph_passes::effects::occlusion::{AmbientOcclusion, Axis, OcclusionBlur, OcclusionSettings};
 use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;
-use framegraph_passes::{CameraView, LightSearch, Precision, ViewId, ViewSettings};
+use framegraph_passes::{CameraView, Precision, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
-use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture};
+use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture, texture_2d};
 use glam::{DVec2, DVec3, Vec3};
 use std::error::Error;
 use std::time::Instant;
 use truth::occlusion as truth;
 use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{CompareFunction, Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use wgpu::{CompareFunction, TextureFormat, TextureUsages};
 
 /// Copies an uploaded picture into a depth attachment.
 const GIVEN: Shader<'static> = Shader::new(
@@ -140,11 +140,8 @@ impl Stage {
             camera: self.camera.clone(),
             size_px: self.size_px,
             ev100: 0.0,
-            environment_intensity: 1.0,
             shadows: None,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
+            ..ViewSettings::default()
         };
         let mut view = CameraView::empty(&seen);
         if let Some(toward) = self.toward_sun {
@@ -178,16 +175,7 @@ impl Stage {
 
     fn uploaded(&self, gpu: &Gpu) -> wgpu::Texture {
         let [width, height] = self.size_px;
-        let desc = TextureDescriptor {
-            label: Some("given"),
-            size: Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: TextureFormat::R32Float,
-            usage: TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        };
+        let desc = texture_2d("given", [width, height], TextureFormat::R32Float, TextureUsages::TEXTURE_BINDING);
         let depth = bytemuck::cast_slice(&self.depth);
         gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, depth)
     }

@@ -8,7 +8,7 @@ use framegraph_passes::gpu_scene::upload::GpuScene;
 use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::program::Programs;
 use framegraph_passes::stages::Slot;
-use framegraph_passes::{CameraView, Handles, LightSearch, PreparedScene, ViewId, ViewSettings};
+use framegraph_passes::{CameraView, Handles, PreparedScene, ViewId, ViewSettings};
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::{Camera, Material, Projection, Scene, progress};
 use framegraph_wgpu::{Frame, Gpu, Imports, Raster, Shader, read_texture};
@@ -130,16 +130,7 @@ impl Stage {
     fn view(&self, lens: &Lens) -> Result<CameraView, Box<dyn Error>> {
         let camera = Camera::look_at(lens.eye, lens.target, DVec3::Y, self.projection)?;
         let size_px = self.size_px;
-        let seen = ViewSettings {
-            camera,
-            size_px,
-            ev100: 0.0,
-            environment_intensity: 1.0,
-            shadows: None,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
-        };
+        let seen = ViewSettings { camera, size_px, ev100: 0.0, shadows: None, ..ViewSettings::default() };
         Ok(CameraView::unlit(&PreparedScene::new(&self.scene), &seen))
     }
 

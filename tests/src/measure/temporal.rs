@@ -88,16 +88,7 @@ impl<'g> Stage<'g> {
     pub fn new(gpu: &'g Gpu) -> Result<Self, Box<dyn Error>> {
         let camera = Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, Projection::perspective(1.0, 0.1))?;
         let (size_px, lights) = ([64, 64], LightSearch::default());
-        let seen = ViewSettings {
-            camera,
-            size_px,
-            ev100: 0.0,
-            environment_intensity: 1.0,
-            shadows: None,
-            lights,
-            lod_error_px: 0.0,
-            visible_layers: 1,
-        };
+        let seen = ViewSettings { camera, size_px, ev100: 0.0, shadows: None, lights, ..ViewSettings::default() };
         let views = Views::new(gpu, [CameraView::empty(&seen)])?;
         let painted = Painted { disc: [0.0; 4], ground: [0.0; 2] };
         let exposure = views.get(ViewId::MAIN)?.view.frame.exposure;

@@ -10,7 +10,7 @@ const NO_ENVIRONMENT: f64 = 30_000.0;
 /// Converts fog; missing options have Filament's defaults. Returns `None` without an environment, since Filament then
 /// draws no sky and no fog in front of it.
 pub fn settings(stated: &Fog, scene: &Scene) -> Option<FogSettings> {
-    let usual = FogSettings::DEFAULT;
+    let usual = FogSettings { exact: false, ..FogSettings::DEFAULT };
     let number = |value: Option<f64>, default: f32| value.map_or(default, |x| x as f32);
     let intensity = scene.ibl.as_ref().map_or(NO_ENVIRONMENT, |ibl| ibl.intensity);
     let color = stated.color.unwrap_or([1.0; 3]);
@@ -30,6 +30,6 @@ pub fn settings(stated: &Fog, scene: &Scene) -> Option<FogSettings> {
             .in_scattering_size
             .filter(|size| *size > 0.0)
             .map(|size| FogGlow { start_m: number(stated.in_scattering_start, 0.0), size: size as f32 }),
-        exact: false,
+        ..usual
     })
 }

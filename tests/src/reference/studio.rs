@@ -23,9 +23,7 @@ use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::light::ibl::{DfgSettings, IblSettings};
 use framegraph_passes::light::shading::{LightSettings, LightWindow, SpecularAa, TransmissionBlur};
 use framegraph_passes::stages::{Handles, Slot, StageError};
-use framegraph_passes::{
-    CameraView, LightSearch, Lighting, PostSettings, Quality, Settings, Shading, ViewId, World, stages,
-};
+use framegraph_passes::{CameraView, Lighting, PostSettings, Quality, Settings, Shading, ViewId, World, stages};
 use framegraph_scene::camera::EV100_RANGE;
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
 use framegraph_shader_mirrors::dfg::Visibility;
@@ -233,9 +231,7 @@ fn view_settings(document: &Document) -> Result<ViewSettings, Box<dyn Error>> {
         ev100,
         environment_intensity: stated.ibl.as_ref().map_or(1.0, |ibl| ibl.intensity as f32),
         shadows: shadows(document),
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     })
 }
 

@@ -13,7 +13,7 @@ use framegraph_passes::effects::bloom::{
 };
 use framegraph_passes::effects::post::{Post, PostEffect};
 use framegraph_passes::gpu_scene::view::{ViewSettings, Views};
-use framegraph_passes::{CameraView, Handles, LightSearch, PostSettings, Settings, Slot, StageError};
+use framegraph_passes::{CameraView, Handles, PostSettings, Settings, Slot, StageError};
 use framegraph_scene::{Camera, Projection};
 use framegraph_shader_mirrors::flare::starburst;
 use framegraph_wgpu::{Frame, Gpu};
@@ -31,16 +31,8 @@ fn camera() -> Result<Camera, Box<dyn Error>> {
 }
 
 fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
-    let moment = ViewSettings {
-        camera: camera()?,
-        size_px: SIZE,
-        ev100: 0.0,
-        environment_intensity: 1.0,
-        shadows: None,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
-    };
+    let moment =
+        ViewSettings { camera: camera()?, size_px: SIZE, ev100: 0.0, shadows: None, ..ViewSettings::default() };
     Ok(Parts { views: Views::new(gpu, [CameraView::empty(&moment)])?, ..Parts::default() })
 }
 

@@ -4,7 +4,7 @@
 use crate::stage::{Shot, declared, gpu, lighting};
 use framegraph::{Plan, Scratch, compile};
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, LightSearch, Settings, World};
+use framegraph_passes::{CameraView, Settings, World};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::light::LightKind;
@@ -44,16 +44,7 @@ fn radiance(
     let shot = Shot { size_px, options, ev100, ..Shot::small(Settings::default()) };
     let environment = Sky::default().environment(32)?;
     let lighting = lighting(gpu, &environment, &shot.settings.shading)?;
-    let moment = ViewSettings {
-        camera,
-        size_px,
-        ev100,
-        environment_intensity: 1.0,
-        shadows: shot.settings.shadows,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
-    };
+    let moment = ViewSettings { camera, size_px, ev100, shadows: shot.settings.shadows, ..ViewSettings::default() };
     let view = CameraView::new(scene, &lighting.image, &Background::Environment, &moment);
     let world = World::new(gpu, scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&shot.settings.for_scene(scene, size_px));

@@ -10,7 +10,7 @@ use framegraph::{Caps, Counts, Options, Texture, dump};
 use framegraph_passes::effects::depth::structure::Resolution;
 use framegraph_passes::effects::dof::depth_of_field;
 use framegraph_passes::gpu_scene::view::{ViewSettings, Views};
-use framegraph_passes::{CameraView, DofSettings, Handles, LightSearch, Settings, Slot, StageError};
+use framegraph_passes::{CameraView, DofSettings, Handles, Settings, Slot, StageError};
 use framegraph_scene::{Camera, Projection};
 use framegraph_wgpu::{Frame, Gpu};
 use glam::DVec3;
@@ -27,11 +27,8 @@ fn parts(gpu: &Gpu) -> Result<Parts, Box<dyn Error>> {
         camera: Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Projection::perspective(0.9, NEAR_M))?,
         size_px: SIZE,
         ev100: 0.0,
-        environment_intensity: 1.0,
         shadows: None,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     Ok(Parts { views: Views::new(gpu, [CameraView::empty(&moment)])?, ..Parts::default() })
 }

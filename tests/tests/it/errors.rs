@@ -7,8 +7,19 @@ use std::path::{Path, PathBuf};
 /// Returns all sources of the packages, without dependencies.
 fn sources() -> Result<Vec<PathBuf>, std::io::Error> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let rooms =
-        ["framegraph", "renderer", "scene", "shaders", "passes", "tests", "examples", "viewer", "vulkan", "xtask"];
+    let rooms = [
+        "framegraph",
+        "renderer",
+        "scene",
+        "shaders",
+        "passes",
+        "tests",
+        "examples",
+        "egui",
+        "viewer",
+        "vulkan",
+        "xtask",
+    ];
     let mut folders: Vec<_> = rooms.map(|room| root.join(room)).into();
     let mut files = Vec::new();
     while let Some(folder) = folders.pop() {

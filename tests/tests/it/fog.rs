@@ -5,7 +5,7 @@ use crate::stage::{gpu, lighting, plan};
 use framegraph::{Caps, Options, Plan, Scratch, Target, compile};
 use framegraph_passes::effects::fog::{FogColor, FogGlow};
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
-use framegraph_passes::{CameraView, FogSettings, LightSearch, Settings, Shading, World, standard};
+use framegraph_passes::{CameraView, FogSettings, Settings, Shading, World, standard};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::{Camera, Environment, Light, Projection, Scene, progress};
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
@@ -47,11 +47,8 @@ fn shoot_under(
         camera: Camera::look_at(EYE, EYE + LOOK, DVec3::Y, Projection::perspective(FOV, 0.1))?,
         size_px: SIZE,
         ev100: (1.0_f32 / 1.2).log2(),
-        environment_intensity: 1.0,
         shadows: None,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;

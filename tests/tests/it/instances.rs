@@ -159,11 +159,10 @@ fn instanced_draws_are_the_same_picture() -> TestResult {
         camera: scene.default_camera(1.5),
         size_px: shot.size_px,
         ev100: shot.ev100,
-        environment_intensity: 1.0,
         shadows: settings.shadows,
         lights: framegraph_passes::LightSearch::default(),
         lod_error_px: 2.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let coarse = CameraView::new(&scene, &world.lighting.image, &background, &seen);
     let levels = |list: &framegraph_passes::gpu_scene::indirect::DrawList| {

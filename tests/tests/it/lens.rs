@@ -5,7 +5,7 @@ use crate::stage::{declared, gpu, lighting};
 use framegraph::{Options, Plan, Scratch, compile};
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::grading::{Baked, GradeBy, GradingTables, Look};
-use framegraph_passes::{CameraView, LightSearch, PostSettings, Settings, Shading, World};
+use framegraph_passes::{CameraView, PostSettings, Settings, Shading, World};
 use framegraph_scene::environment::EquirectMap;
 use framegraph_scene::light::LightKind;
 use framegraph_scene::{Camera, Environment, Light, Projection, Scene, SunHalo, progress};
@@ -41,16 +41,7 @@ fn shoot(
     let eye = DVec3::new(3e4, -200.0, 70.0);
     let camera = Camera::look_at(eye, eye + LOOK, DVec3::Y, Projection::perspective(FOV, 0.1))?;
     let ev100 = (1.0_f32 / 1.2).log2();
-    let moment = ViewSettings {
-        camera,
-        size_px: SIZE,
-        ev100,
-        environment_intensity: 1.0,
-        shadows: None,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
-    };
+    let moment = ViewSettings { camera, size_px: SIZE, ev100, shadows: None, ..ViewSettings::default() };
     let view = CameraView::new(&scene, &lighting.image, background, &moment);
     let world = World::new(gpu, &scene, lighting, [view], &mut progress::silent)?;
     let (mut frame, io) = declared(&settings);

@@ -64,11 +64,10 @@ fn a_pixel_off_is_hardly_seen_and_surfaces_shadow_nothing_of_their_own() -> Resu
             camera: Camera::look_at(eye, DVec3::new(0.0, 0.2, -2.0), DVec3::Y, Projection::perspective(0.8, 0.1))?,
             size_px: SIZE_PX,
             ev100: shot.ev100,
-            environment_intensity: 1.0,
             shadows: settings.shadows,
             lights: LightSearch::All,
             lod_error_px,
-            visible_layers: 1,
+            ..ViewSettings::default()
         };
         Ok(CameraView::new(&scene, &lighting.image, &Background::Environment, &seen))
     };

@@ -46,11 +46,10 @@ fn shoot(gpu: &Gpu, scene: &Scene, visible_layers: u8, shadows: ShadowSettings) 
         camera: Camera::look_at(DVec3::new(0.0, 5.0, 3.0), DVec3::ZERO, DVec3::Y, projection)?,
         size_px: SIZE_PX,
         ev100: 8.0,
-        environment_intensity: 1.0,
         shadows: settings.shadows,
         lights: LightSearch::All,
-        lod_error_px: 0.0,
         visible_layers,
+        ..ViewSettings::default()
     };
     let view = CameraView::new(scene, &lighting.image, &Background::None, &view);
     let world = World::new(gpu, scene, lighting, [view], &mut progress::silent)?;

@@ -13,16 +13,16 @@ use framegraph_passes::effects::transmission::{SceneCopy, SceneLevel};
 use framegraph_passes::gpu_scene::view::Views;
 use framegraph_passes::grading::{GradingTables, Look};
 use framegraph_passes::program::Programs;
-use framegraph_passes::{CameraView, FrameIndex, LightSearch, PostSettings, ViewId, ViewSettings};
+use framegraph_passes::{CameraView, FrameIndex, PostSettings, ViewId, ViewSettings};
 use framegraph_scene::{Camera, Projection};
 use framegraph_shader_mirrors::srgb::srgb_from_linear_channel;
 use framegraph_shaders::layout::{FxaaUniforms, ToneMap};
-use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture};
+use framegraph_wgpu::{Depth, Frame, Gpu, Imports, Raster, Shader, read_texture, texture_2d};
 use glam::DVec3;
 use std::error::Error;
 use tests::executors;
 use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use wgpu::{TextureFormat, TextureUsages};
 
 type TestResult = Result<(), Box<dyn Error>>;
 
@@ -63,16 +63,7 @@ const SIZE: [u32; 2] = [16, 12];
 const TEXELS: usize = (SIZE[0] * SIZE[1]) as usize;
 
 fn uploaded(gpu: &Gpu, format: TextureFormat, bytes: &[u8]) -> wgpu::Texture {
-    let desc = TextureDescriptor {
-        label: Some("picture"),
-        size: Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format,
-        usage: TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
+    let desc = texture_2d("picture", [SIZE[0], SIZE[1]], format, TextureUsages::TEXTURE_BINDING);
     gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, bytes)
 }
 
@@ -192,16 +183,7 @@ fn a_scene_copy_takes_a_camera_and_no_scene() -> TestResult {
     let Some(gpu) = gpu("a_scene_copy_takes_a_camera_and_no_scene") else { return Ok(()) };
     let (near_m, depth) = (0.1, 0.25);
     let camera = Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Projection::perspective(1.0, near_m))?;
-    let seen = ViewSettings {
-        camera,
-        size_px: SIZE,
-        ev100: 0.0,
-        environment_intensity: 1.0,
-        shadows: None,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
-    };
+    let seen = ViewSettings { camera, size_px: SIZE, ev100: 0.0, shadows: None, ..ViewSettings::default() };
     let parts = Parts { views: Views::new(&gpu, [CameraView::empty(&seen)])?, ..Parts::default() };
     let picture = uploaded(&gpu, TextureFormat::Rgba16Float, &ramp());
     let (scene, _) = filtered(&gpu, &parts, (Format::Rgba16Float, &picture), |frame, hdr| {

@@ -76,11 +76,9 @@ fn picks_name_what_is_seen() -> TestResult {
         camera: camera.clone(),
         size_px: SIZE_PX,
         ev100: 0.0,
-        environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::All,
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let before = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
     let mut world = World::new(&gpu, &scene, lighting, [before], &mut progress::silent)?;

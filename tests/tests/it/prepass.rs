@@ -60,11 +60,10 @@ fn decided(scene: &Scene, asked: Settings) -> (bool, String) {
         camera: camera.expect("a camera"),
         size_px: [64, 64],
         ev100: 10.0,
-        environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::All,
         lod_error_px: 3.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let irradiance = &[Vec4::ONE; 18];
     let input = FactInput {

@@ -9,7 +9,7 @@ use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::{CameraView, FrameIndex, Settings, ViewId, ViewSettings, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
-use framegraph_wgpu::{FrameLoop, wgpu};
+use framegraph_wgpu::{FrameLoop, texture_2d, wgpu};
 use glam::DVec3;
 use std::error::Error;
 
@@ -29,16 +29,12 @@ fn by_hand(shown: &mut SceneLoop, first: &ViewSettings, follows: bool) -> Result
     let mut frames = FrameLoop::new(&gpu);
     let settings = shown.settings.for_scene(&shown.scene, SIZE_PX);
     let [width, height] = SIZE_PX;
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("by hand"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8UnormSrgb,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let texture = gpu.device.create_texture(&texture_2d(
+        "by hand",
+        [width, height],
+        wgpu::TextureFormat::Rgba8UnormSrgb,
+        wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+    ));
     let world = &mut shown.world;
     for index in 0..FRAMES {
         let seen = panned(first, index);

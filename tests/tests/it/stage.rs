@@ -5,7 +5,7 @@ use framegraph_passes::gpu_scene::lighting::LightingError;
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::light::ibl::{DfgSettings, IblSettings, ImageLight};
 use framegraph_passes::light::shading::LightSettings;
-use framegraph_passes::{CameraView, FrameIo, LightSearch, Lighting, Precision, Settings, Shading, World, standard};
+use framegraph_passes::{CameraView, FrameIo, Lighting, Precision, Settings, Shading, World, standard};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Environment, Scene, progress};
 use framegraph_wgpu::Frame;
@@ -152,11 +152,8 @@ pub fn view_of(scene: &Scene, light: &ImageLight, background: &Background, shot:
         camera,
         size_px: settings.drawn_px([width, height]),
         ev100,
-        environment_intensity: 1.0,
         shadows: settings.shadows,
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     CameraView::new(scene, light, background, &moment)
 }

@@ -47,11 +47,9 @@ fn shoot(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<([usize; 3], Co
         camera: Camera::look_at(DVec3::Y * 3.0, DVec3::ZERO, DVec3::Z, Projection::perspective(0.9, 0.1))?,
         size_px: SIZE_PX,
         ev100: 0.0,
-        environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::All,
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let view = CameraView::new(scene, &lighting.image, &Background::None, &view);
     let world = World::new(gpu, scene, lighting, [view], &mut progress::silent)?;

@@ -5,7 +5,7 @@ use framegraph::{Caps, Counts, Options, Plan, Scratch, Target, Texture, compile}
 use framegraph_passes::SettingsTable;
 use framegraph_passes::gpu_scene::view::{Background, ViewSettings};
 use framegraph_passes::stages::{Handles, Slot};
-use framegraph_passes::{CameraView, LightSearch, Settings, Shading, TaaSettings, ViewId, World, stages};
+use framegraph_passes::{CameraView, Settings, Shading, TaaSettings, ViewId, World, stages};
 use framegraph_scene::geometry::{plane, sphere};
 use framegraph_scene::motion::{Body, Moves, Shape};
 use framegraph_scene::texture::{Filter, Image, Sampler, TextureRole, TextureSlot, UvTransform};
@@ -131,11 +131,8 @@ impl<'g> Film<'g> {
             camera: camera(eye)?,
             size_px: self.size_px,
             ev100: 0.0,
-            environment_intensity: 1.0,
             shadows: None,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
+            ..ViewSettings::default()
         };
         let light = lighting(self.gpu, &Environment::uniform(DVec3::ONE)?, &settings.shading)?;
         let background = Background::Constant(Vec3::splat(0.02));

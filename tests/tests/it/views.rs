@@ -9,9 +9,7 @@ use framegraph_passes::effects::shadow::shadow_maps;
 use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_passes::gpu_scene::view::Background;
 use framegraph_passes::light::ibl::ImageLight;
-use framegraph_passes::{
-    CameraView, Handles, LightSearch, Settings, Slot, StageError, ViewId, ViewSettings, World, stages,
-};
+use framegraph_passes::{CameraView, Handles, Settings, Slot, StageError, ViewId, ViewSettings, World, stages};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Cx, Frame, Gpu, Imports, Record, RecordError, read_texture};
@@ -61,16 +59,7 @@ fn views(scene: &Scene, light: &ImageLight, settings: &Settings) -> Vec<CameraVi
     let seen = [0.0, 0.7].map(|left_m| {
         let mut camera = camera.clone();
         camera.eye -= camera.world_from_view * DVec3::X * left_m;
-        ViewSettings {
-            camera,
-            size_px: VIEW,
-            ev100: 14.5,
-            environment_intensity: 1.0,
-            shadows: settings.shadows,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
-        }
+        ViewSettings { camera, size_px: VIEW, shadows: settings.shadows, ..ViewSettings::default() }
     });
     CameraView::together(scene, light, &Background::Environment, &seen)
 }

@@ -28,6 +28,9 @@ impl Viewer {
             };
             self.dialog.ask(purpose, ui.ctx());
         }
+        if self.attached.as_mut().is_some_and(|attached| std::mem::take(&mut attached.asks_file)) {
+            self.dialog.ask(Purpose::Texture, ui.ctx());
+        }
         match self.dialog.answer() {
             Some((purpose, Answer::File(path))) => self.chosen(purpose, &path, crate::panel::theme(ui)),
             Some((Purpose::Open(_), Answer::NoDialog)) => {
@@ -51,9 +54,10 @@ impl Viewer {
             },
             Purpose::Export(view) => self.export(view, path, theme),
             Purpose::Trace => self.export_trace(path),
-            Purpose::Texture => match &self.live {
-                Some(live) => crate::live::preview::save(&live.preview, path, &live.read()),
-                None => return,
+            Purpose::Texture => match (&self.live, &self.attached) {
+                (Some(live), _) => crate::live::preview::save(&live.preview, path, &live.read()),
+                (None, Some(attached)) => crate::live::preview::save(&attached.preview, path, &[]),
+                (None, None) => return,
             },
         };
         match done {

@@ -1,8 +1,8 @@
 //! File dialogs of the desktop, on a separate thread so that frames continue.
 
+use super::panes::Pane;
 use crate::job::Job;
 use crate::session::Role;
-use crate::view::View;
 use egui::Context;
 use rfd::AsyncFileDialog;
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ pub enum Purpose {
     /// Saves the settings of the frame.
     SaveSettings,
     /// Exports a view or the plan.
-    Export(View),
+    Export(Pane),
     /// Exports frame times.
     Trace,
     /// Saves the texture of the preview.
@@ -46,7 +46,7 @@ impl Purpose {
         match self {
             Self::Open(_) => None,
             Self::SaveSettings => Some("settings.ron".into()),
-            Self::Export(view) => Some(format!("{}.svg", view.word())),
+            Self::Export(pane) => Some(format!("{}.svg", pane.word())),
             Self::Trace => Some("trace.json".into()),
             Self::Texture => Some("texture.png".into()),
         }

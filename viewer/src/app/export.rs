@@ -2,7 +2,7 @@
 
 use super::Viewer;
 use super::dialog::Purpose;
-use super::drawings::drawn;
+use super::panes::Pane;
 use crate::drawing::{Drawing, Theme, svg};
 use crate::offscreen::{Offscreen, own_size_px};
 use crate::plan_data::PlanData;
@@ -73,13 +73,13 @@ impl Viewer {
             ui.add(TextEdit::singleline(&mut self.typed.1).hint_text("FILE.svg").desired_width(220.0));
             let typed = PathBuf::from(self.typed.1.trim());
             let named = |otherwise: String| if typed.as_os_str().is_empty() { otherwise.into() } else { typed.clone() };
-            for view in View::ALL.into_iter().filter(|view| *view != View::Inspector) {
+            for pane in Pane::drawn().filter(|pane| *pane != Pane::View(View::Inspector)) {
                 ui.horizontal(|ui| {
-                    if ui.button(view.word()).clicked() {
-                        self.chosen(Purpose::Export(view), &named(format!("{}.svg", view.word())), theme);
+                    if ui.button(pane.word()).clicked() {
+                        self.chosen(Purpose::Export(pane), &named(format!("{}.svg", pane.word())), theme);
                         ui.close();
                     }
-                    self.ask_button(ui, "…", Purpose::Export(view));
+                    self.ask_button(ui, "…", Purpose::Export(pane));
                 });
             }
             if self.live.is_some() {
@@ -100,8 +100,9 @@ impl Viewer {
     ///
     /// # Errors
     /// One line that names the file.
-    pub(super) fn export(&self, view: View, path: &Path, theme: Theme) -> Result<(), String> {
-        let drawing = (self.session.plan.is_some() || !view.is_of_a_plan()).then(|| drawn(view, &self.session));
+    pub(super) fn export(&self, pane: Pane, path: &Path, theme: Theme) -> Result<(), String> {
+        let drawing =
+            (self.session.plan.is_some() || !pane.is_of_a_plan()).then(|| pane.drawing(&self.session)).flatten();
         write(path, drawing.as_ref(), self.session.plan.as_deref(), theme, &self.read())
     }
 

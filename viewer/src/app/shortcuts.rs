@@ -1,12 +1,12 @@
 //! Keyboard shortcuts.
 
-use crate::view::View;
+use super::panes::Pane;
 use egui::{Context, Grid, Key, Modifiers};
 
 /// Shortcuts with descriptions.
 pub const SHORTCUTS: [(&str, &str); 14] = [
     ("Ctrl+F", "search passes and resources"),
-    ("Ctrl+1 … Ctrl+8", "graph, timeline, memory, bandwidth, inspector, diff, trace, accuracy"),
+    ("Ctrl+1 … Ctrl+9", "graph, timeline, memory, bandwidth, inspector, diff, trace, accuracy, queues"),
     ("Escape", "clear the selection; close this list"),
     ("F", "show the whole view under the pointer"),
     ("1", "show it at 100 %"),
@@ -26,8 +26,8 @@ pub const SHORTCUTS: [(&str, &str); 14] = [
 pub(super) enum Action {
     /// Focus the search.
     Search,
-    /// Bring a view to the front.
-    View(View),
+    /// Bring a pane to the front.
+    Pane(Pane),
     /// Toggle the list of shortcuts.
     Help,
     /// Undo the last change of settings.
@@ -49,9 +49,9 @@ pub(super) fn actions(ctx: &Context) -> Vec<Action> {
     actions.extend(
         numbers
             .into_iter()
-            .zip(View::ALL)
+            .zip(Pane::drawn())
             .filter(|(key, _)| pressed(Modifiers::COMMAND, *key))
-            .map(|(_, view)| Action::View(view)),
+            .map(|(_, pane)| Action::Pane(pane)),
     );
     // Text fields have their own undo.
     if !ctx.egui_wants_keyboard_input() {

@@ -3,15 +3,16 @@
 //! A frame is drawn by a thread of its own, because creating its pipelines may take seconds. The panels wait for it for
 //! some milliseconds. If it takes longer, they show the last picture and the progress.
 
+use super::Live;
 use super::bisecting::Bisecting;
 use super::capture::Document;
 use super::drawing::{Copied, Done};
 use super::frame::Running;
 use super::preview::read;
-use super::{Live, times};
 use crate::job::{Handle, Job};
 use crate::plan_data::PlanData;
 use crate::session::Session;
+use crate::trace_data::TraceData;
 use egui::TextureId;
 use framegraph_wgpu::debug::Modes;
 use framegraph_wgpu::read_texture;
@@ -263,7 +264,7 @@ impl Live {
         if shows && self.times_at.is_none_or(|at| at.elapsed().as_secs_f32() >= TIMES_S) {
             self.times_at = Some(Instant::now());
             if let Some(trace) = running.frames().executor().timing().trace() {
-                session.take_times(times::of(trace));
+                session.take_times(TraceData::of_trace(trace));
             }
         }
     }

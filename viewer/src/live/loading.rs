@@ -118,11 +118,9 @@ pub fn load(
         camera: scene.default_camera(1.0),
         size_px: [1, 1],
         ev100: metered_ev100,
-        environment_intensity: 1.0,
         shadows: None,
         lights: LightSearch::All,
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let view = CameraView::prepared(&scene, &prepared, &lighting.image, &background, &first);
     let world = World::of(gpu, uploaded, lighting, [view]).map_err(|e| e.to_string())?;

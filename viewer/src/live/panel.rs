@@ -15,7 +15,7 @@ mod viewport;
 pub use debugging::debugging;
 pub use effects::effects;
 pub use lens::lens;
-pub use preview::preview;
+pub use preview::{preview, remote_preview};
 pub use scene::scene;
 pub use settings::settings;
 pub use viewport::viewport;

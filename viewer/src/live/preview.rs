@@ -12,6 +12,7 @@ pub use save::save;
 
 use super::frame::Running;
 use crate::job::Job;
+use framegraph::Plan;
 use framegraph_wgpu::inspect::{InspectTarget, Inspector, all_targets};
 use look::Look;
 use pan::Pan;
@@ -99,22 +100,22 @@ impl Preview {
         self.reading
     }
 
-    /// Lists the inspectable subresources of the resource after a change of the plan.
-    pub(super) fn list(&mut self, running: &Running) {
+    /// Lists the inspectable subresources of the resource after a change of the plan, which a number identifies.
+    fn list(&mut self, plan: &Plan, plans: u64) {
         let Some(name) = self.name.clone() else { return };
-        let listed = (name, running.plans());
+        let listed = (name, plans);
         if self.listed.as_ref() == Some(&listed) {
             return;
         }
         let name = &listed.0;
-        let graph = running.plan().graph();
+        let graph = plan.graph();
         let resource = |target: &InspectTarget| graph.versions()[target.version.index()].resource;
         // Plan rows number resources of equal names, in order.
         let (plain, number) = match name.rsplit_once('#').map(|(plain, number)| (plain, number.parse::<usize>())) {
             Some((plain, Ok(number))) => (plain, number.max(1)),
             _ => (name.as_str(), 1),
         };
-        let mut all = all_targets(running.plan());
+        let mut all = all_targets(plan);
         all.retain(|target| target.name == plain);
         let mut of_name: Vec<_> = all.iter().map(resource).collect();
         of_name.sort_unstable();
@@ -144,31 +145,43 @@ impl Preview {
     /// Returns the subresource to read after a change of the selection, with the inspector to use. `frame` identifies the
     /// drawn frame if the preview follows.
     pub(super) fn begin(&mut self, running: &Running, frame: u64) -> Option<(InspectTarget, Inspector)> {
-        self.list(running);
+        let target = self.begin_of(running.plan(), running.plans(), frame)?;
+        let inspector = self.inspector.take().unwrap_or_else(|| Inspector::new(&running.screen().gpu));
+        Some((target, inspector))
+    }
+
+    /// Returns the subresource of a plan to read, like [`begin`](Self::begin). `plans` identifies the plan.
+    pub(crate) fn begin_of(&mut self, plan: &Plan, plans: u64, frame: u64) -> Option<InspectTarget> {
+        self.list(plan, plans);
         let Some(target) = self.target() else {
             (self.found, self.picture) = (None, None);
             self.error = self.name.as_ref().map(|name| format!("`{name}` has no texels in this frame"));
             return None;
         };
-        let asked = (target, if self.follow { frame } else { running.plans() });
+        let asked = (target, if self.follow { frame } else { plans });
         if self.reading || self.asked.as_ref() == Some(&asked) {
             return None;
         }
-        let inspector = self.inspector.take().unwrap_or_else(|| Inspector::new(&running.screen().gpu));
         self.reading = true;
         let target = asked.0.clone();
         self.asked = Some(asked);
-        Some((target, inspector))
+        Some(target)
     }
 
     /// Ends reading without a result, because the thread that read the texture panicked.
-    pub(super) fn interrupted(&mut self) {
+    pub(crate) fn interrupted(&mut self) {
         self.reading = false;
     }
 
     /// Takes the result of reading a subresource. Ignores it if another one is selected by now.
     pub(super) fn take(&mut self, inspector: Inspector, target: &InspectTarget, result: Result<Found, String>) {
-        (self.inspector, self.reading) = (Some(inspector), false);
+        self.inspector = Some(inspector);
+        self.take_found(target, result);
+    }
+
+    /// Takes texels like [`take`](Self::take).
+    pub(crate) fn take_found(&mut self, target: &InspectTarget, result: Result<Found, String>) {
+        self.reading = false;
         let is_listed = self.name.is_some() && self.name.as_ref() == self.listed.as_ref().map(|(name, _)| name);
         if !is_listed || self.target().as_ref() != Some(target) {
             self.asked = None;

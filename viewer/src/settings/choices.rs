@@ -14,10 +14,9 @@ pub fn alternatives(path: &str) -> Option<Alternatives> {
     static ALL: LazyLock<BTreeMap<String, Alternatives>> = LazyLock::new(|| {
         let mut all = BTreeMap::new();
         for section in sections() {
-            let frames = section.methods.iter().map(|method| {
+            let frames = section.methods.iter().filter_map(|method| {
                 let mut frame = FrameSettings::DEFAULT;
-                section.choose(&mut frame, method);
-                frame
+                section.take(&mut frame, method).ok().map(|()| frame)
             });
             if !section.methods.is_empty() {
                 all.insert(section.path.to_owned(), values(section.path, frames));

@@ -106,7 +106,7 @@ fn plans_graphs_and_times_are_written_and_read_again() {
         harness.state_mut().chosen(purpose, &path, Theme::Light);
         path
     };
-    let graph = View::ALL.into_iter().find(|view| view.word() == "graph").expect("a view");
+    let graph = Pane::View(View::Graph);
     let ron = write(&mut harness, Purpose::Export(graph), "frame.ron");
     let source = GraphSource::open(&ron).expect("the graph can be read");
     let caps = live(&mut harness).running.as_ref().expect("a frame").screen().gpu.caps();

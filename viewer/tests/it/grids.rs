@@ -129,7 +129,7 @@ fn memory_is_a_map_and_a_table() {
 #[test]
 fn two_thousand_rows_are_scrolled() {
     let mut session = Session::new(WhatIf::on(Caps::wgpu()), || {});
-    session.show_plan(viewer::measuring::large(2000).expect("a plan"));
+    session.show_plan(viewer::synthetic::large(2000).expect("a plan"));
     let mut viewer = Viewer::new(session);
     viewer.turn_to(Pane::View(View::Timeline));
     let mut harness = of_viewer(viewer);
@@ -154,7 +154,7 @@ fn two_thousand_rows_are_scrolled() {
 /// Returns the maximum number of shapes of a frame while the selection moves through a plan.
 fn painted(passes: usize) -> usize {
     let mut session = Session::new(WhatIf::on(Caps::wgpu()), || {});
-    session.show_plan(viewer::measuring::large(passes).expect("a plan"));
+    session.show_plan(viewer::synthetic::large(passes).expect("a plan"));
     let mut viewer = Viewer::new(session);
     viewer.turn_to(Pane::View(View::Timeline));
     let ctx = egui::Context::default();

@@ -1,5 +1,6 @@
 //! Tests of the viewer: files, drawings, panels and the window.
 
+mod attach;
 mod changes;
 mod editing;
 mod grids;

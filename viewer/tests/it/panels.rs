@@ -195,7 +195,7 @@ fn a_frame_is_chosen_within_a_time_and_an_option_is_seen() {
     let mut harness = shown("filament");
     harness.state_mut().session.open(&folder.join("accuracy.json"), viewer::app::Role::Shown);
     settled(&mut harness);
-    harness.state_mut().turn_to(viewer::app::Pane::View(View::Accuracy));
+    harness.state_mut().turn_to(viewer::app::Pane::Accuracy);
     harness.run();
     let data = harness.state().session.accuracy.clone().expect("it is open");
     let [fastest, finest] = data.span_ms().expect("frames were measured");

@@ -37,36 +37,40 @@ fn write(path: &Path, rgba: &[u8]) {
 }
 
 /// Returns a viewer of Filament's frame on a tiler, or of a deferred frame for queues, with a selection for the view.
-fn shown(view: View) -> (Viewer, Option<Item>) {
+fn shown(pane: Pane) -> (Viewer, Option<Item>) {
     // Filament's frame has no work for another queue.
+    let view = match pane {
+        Pane::View(view) => Some(view),
+        _ => None,
+    };
     let mut session = match view {
-        View::Queues => session_of(&case("deferred"), &[]),
+        Some(View::Queues) => session_of(&case("deferred"), &[]),
         _ => session_of(&case("filament"), &["shadows", "sao"]),
     };
     let plan = session.plan.clone().expect("a plan");
-    if matches!(view, View::Timeline | View::Trace) {
+    if matches!(view, Some(View::Timeline | View::Trace)) {
         session.trace = Some(Arc::new(read(trace_of(&plan, 120, 77).as_bytes()).expect("a trace")));
     }
-    if matches!(view, View::Bandwidth | View::Diff) {
+    if matches!(view, Some(View::Bandwidth | View::Diff)) {
         let asked = &mut session.questions.as_mut().expect("a graph can be planned anew").asked;
         asked.frame = Some([3840, 2160]);
-        asked.merge = view == View::Bandwidth;
+        asked.merge = view == Some(View::Bandwidth);
         session.ask();
         assert!(session.settle(Duration::from_secs(60)));
     }
     let mut viewer = Viewer::new(session);
-    viewer.turn_to(Pane::View(view));
+    viewer.turn_to(pane);
     if viewer.session.against().is_some() {
         viewer.turn_to(Pane::WhatIf);
     }
     let selected = match view {
-        View::Graph => plan.resource("shadow").map(Item::Resource),
-        View::Timeline => plan.pass("grade").map(Item::Pass),
-        View::Memory => plan.resource("structure").map(Item::Resource),
-        View::Queues => plan.pass("lighting").map(Item::Pass),
+        Some(View::Graph) => plan.resource("shadow").map(Item::Resource),
+        Some(View::Timeline) => plan.pass("grade").map(Item::Pass),
+        Some(View::Memory) => plan.resource("structure").map(Item::Resource),
+        Some(View::Queues) => plan.pass("lighting").map(Item::Pass),
         _ => None,
     };
-    if view == View::Accuracy {
+    if pane == Pane::Accuracy {
         viewer.session.open(Path::new("tests/it/accuracy.json"), viewer::app::Role::Shown);
         assert!(viewer.session.settle(Duration::from_secs(60)));
         viewer.session.allow_ms(120.0);
@@ -85,15 +89,15 @@ fn panels_look_as_in_the_document() {
     let (made, kept) = (folder("pictures"), Path::new("../docs/viewer"));
     let anew = std::env::var_os("VIEWER_PICTURES").is_some_and(|word| word == "write");
     let mut before: Option<Vec<u8>> = None;
-    for view in View::ALL.into_iter().filter(|view| *view != View::Inspector) {
-        let (mut viewer, selected) = shown(view);
-        let theme = if view == View::Memory { Theme::Dark } else { Theme::Light };
+    for pane in Pane::drawn().filter(|pane| *pane != Pane::View(View::Inspector)) {
+        let (mut viewer, selected) = shown(pane);
+        let theme = if pane == Pane::View(View::Memory) { Theme::Dark } else { Theme::Light };
         let rgba = screen.picture(SIZE, 1.0, theme, |ui| {
             viewer.show(ui);
             viewer.select(selected);
         });
         let rgba = rgba.expect("a picture");
-        let file = format!("{}.png", view.word());
+        let file = format!("{}.png", pane.word());
         write(&made.join(&file), &rgba);
         if anew {
             write(&kept.join(&file), &rgba);

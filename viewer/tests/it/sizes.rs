@@ -23,7 +23,7 @@ const SIZES: [[f32; 2]; 9] = [
 
 /// Panes without a live frame.
 fn panes() -> impl Iterator<Item = Pane> {
-    View::ALL.into_iter().map(Pane::View).chain([Pane::List, Pane::WhatIf])
+    Pane::drawn().chain([Pane::List, Pane::WhatIf])
 }
 
 /// Shows one frame of the viewer at a size, with some events. Returns the number of painted shapes.
@@ -79,7 +79,7 @@ fn no_size_stops_a_window_with_one_pass() {
 #[test]
 fn no_size_stops_a_window_with_two_thousand_passes() {
     let mut session = Session::new(WhatIf::on(Caps::wgpu()), || {});
-    session.show_plan(viewer::measuring::large(2000).expect("a plan"));
+    session.show_plan(viewer::synthetic::large(2000).expect("a plan"));
     let mut viewer = Viewer::new(session);
     shown_at_every_size(&mut viewer);
     // The layout on another thread arrives.

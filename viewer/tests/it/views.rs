@@ -257,7 +257,7 @@ fn hints_that_cannot_apply_are_not_shown() {
 
 #[test]
 fn two_thousand_passes_are_laid_out() {
-    let plan = viewer::measuring::large(2000).expect("a plan");
+    let plan = viewer::synthetic::large(2000).expect("a plan");
     let started = std::time::Instant::now();
     let drawing = graph::drawing(&plan, None);
     println!("{} passes are laid out in {:?}", plan.form.passes.len(), started.elapsed());
@@ -269,10 +269,7 @@ fn accuracy_is_plotted_for_every_technique() {
     let text = std::fs::read("tests/it/accuracy.json").expect("the sample");
     let data = viewer::accuracy_data::read(&text).expect("it is sound");
     assert!(data.techniques.len() > 3);
-    let drawn = |budget_ms: f64| {
-        let beside = ViewContext { accuracy: Some(&data), budget_ms, ..ViewContext::default() };
-        drawing(View::Accuracy, &viewer::plan_data::PlanData::default(), beside, 80)
-    };
+    let drawn = |budget_ms: f64| viewer::accuracy_view::drawing(Some(&data), budget_ms);
     let (strict, free) = (drawn(0.0), drawn(1e9));
     // A larger time budget gives a smaller error; the slider covers the whole range.
     let [fastest, finest] = data.span_ms().expect("frames were measured");

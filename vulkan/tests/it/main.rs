@@ -7,4 +7,5 @@ mod faults;
 mod frames;
 mod post;
 mod queues;
+mod shared;
 mod slices;

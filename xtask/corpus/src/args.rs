@@ -116,7 +116,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Command, S
             "jobs" => args.jobs = whole(1024)? as usize,
             "seconds" => args.limit = Duration::from_secs(whole(86400)?),
             "memory" => {
-                let bytes = |text: &str| program::bytes(text).filter(|bytes| *bytes > 0);
+                let bytes = |text: &str| framegraph_check::budget::bytes(text).filter(|bytes| *bytes > 0);
                 args.memory_bytes = item.parse("bytes, such as 2GiB or 500MB", bytes)?;
             }
             _ => args.size_px = item.parse("WxH in pixels, 16 to 1024 each", sides)?,

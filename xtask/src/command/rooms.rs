@@ -41,84 +41,47 @@ struct Row {
 /// for a value that did not exist or that another row has.
 type Before = [&'static str; 5];
 
+const fn row(
+    name: &'static str,
+    package: &'static str,
+    features: &'static [&'static str],
+    folder: Option<&'static str>,
+    before: Before,
+) -> Row {
+    Row { name, package, features, folder, before }
+}
+
 const ROWS: &[Row] = &[
-    Row {
-        name: "`framegraph`: the compiler",
-        package: "framegraph",
-        features: &[],
-        folder: Some("framegraph"),
-        before: ["24", "-", "21254", "-", "61"],
-    },
-    Row {
-        name: "… without default features",
-        package: "framegraph",
-        features: &["--no-default-features"],
-        folder: None,
-        before: ["24", "-", "-", "-", "61"],
-    },
-    Row {
-        name: "`framegraph/pack`: its packer of memory",
-        package: "framegraph-pack",
-        features: &[],
-        folder: Some("framegraph/pack"),
-        before: ["-", "-", "-", "-", "-"],
-    },
-    Row {
-        name: "`framegraph/queues`: plans on several queues",
-        package: "framegraph-queues",
-        features: &[],
-        folder: Some("framegraph/queues"),
-        before: ["-", "-", "-", "-", "-"],
-    },
-    Row {
-        name: "`vulkan`: the executor on Vulkan",
-        package: "framegraph-vulkan",
-        features: &[],
-        folder: Some("vulkan"),
-        before: ["-", "-", "-", "-", "-"],
-    },
-    Row {
-        name: "`renderer`: the executor",
-        package: "framegraph-wgpu",
-        features: &[],
-        folder: Some("renderer"),
-        before: ["142", "81", "18179", "-", "458"],
-    },
-    Row {
-        name: "… on Vulkan alone",
-        package: "framegraph-wgpu",
-        features: &["--no-default-features", "--features", "vulkan"],
-        folder: None,
-        before: ["142", "81", "-", "-", "458"],
-    },
-    Row {
-        name: "`scene`",
-        package: "framegraph-scene",
-        features: &[],
-        folder: Some("scene"),
-        before: ["142", "81", "-", "-", "458"],
-    },
-    Row {
-        name: "`shaders`",
-        package: "framegraph-shaders",
-        features: &[],
-        folder: Some("shaders"),
-        before: ["62", "-", "5399", "3494", "192"],
-    },
-    Row {
-        name: "`passes`",
-        package: "framegraph-passes",
-        features: &[],
-        folder: Some("passes"),
-        before: ["143", "82", "2149", "-", "461"],
-    },
-    Row {
-        name: "the program `render`",
-        package: "examples",
-        features: &[],
-        folder: None,
-        before: ["169", "108", "-", "-", "523"],
-    },
+    row("`framegraph`: the compiler", "framegraph", &[], Some("framegraph"), ["24", "-", "21254", "-", "61"]),
+    row("… without default features", "framegraph", &["--no-default-features"], None, ["24", "-", "-", "-", "61"]),
+    row(
+        "`framegraph/pack`: its packer of memory",
+        "framegraph-pack",
+        &[],
+        Some("framegraph/pack"),
+        ["-", "-", "-", "-", "-"],
+    ),
+    row(
+        "`framegraph/queues`: plans on several queues",
+        "framegraph-queues",
+        &[],
+        Some("framegraph/queues"),
+        ["-", "-", "-", "-", "-"],
+    ),
+    row("`vulkan`: the executor on Vulkan", "framegraph-vulkan", &[], Some("vulkan"), ["-", "-", "-", "-", "-"]),
+    row("`renderer`: the executor", "framegraph-wgpu", &[], Some("renderer"), ["142", "81", "18179", "-", "458"]),
+    row(
+        "… on Vulkan alone",
+        "framegraph-wgpu",
+        &["--no-default-features", "--features", "vulkan"],
+        None,
+        ["142", "81", "-", "-", "458"],
+    ),
+    row("`scene`", "framegraph-scene", &[], Some("scene"), ["142", "81", "-", "-", "458"]),
+    row("`shaders`", "framegraph-shaders", &[], Some("shaders"), ["62", "-", "5399", "3494", "192"]),
+    row("`passes`", "framegraph-passes", &[], Some("passes"), ["143", "82", "2149", "-", "461"]),
+    row("`egui`: panels for egui", "framegraph-egui", &[], Some("egui"), ["-", "-", "-", "-", "-"]),
+    row("the program `render`", "examples", &[], None, ["169", "108", "-", "-", "523"]),
 ];
 
 /// Crates are counted for one system, so that the table does not depend on where it is printed.

@@ -1,6 +1,7 @@
 //! Runs the program `plan` and checks its output, files and exit codes.
 
 mod characters;
+mod ci;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -209,6 +210,8 @@ fn help_names_every_option() {
         "--format",
         "--diff",
         "--budget",
+        "--assert",
+        "--golden",
         "--out",
         "--offsets",
         "--budget-steps",

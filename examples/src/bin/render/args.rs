@@ -10,12 +10,11 @@ use crate::grade::Grade;
 use crate::help;
 use crate::light::Lighting;
 use crate::name::{plan_files, with_ending};
-use crate::parse::{field, fields, precision, quality, switch};
+use crate::parse::{field, fields, precision};
 use crate::shadows::Shadows;
-use crate::values::{alias, camera, frames, memory, samples, size, threads};
+use crate::values::{alias, camera, frames, memory, size, threads};
 use framegraph::Alias;
-use framegraph_passes::PostSettings;
-use framegraph_passes::{Effect, Precision, Quality, Settings, Shading};
+use framegraph_passes::{Effect, FrameSettings, Precision, Settings};
 use framegraph_scene::{BlockFormats, CameraChoice, LoadOptions, Memory};
 use program::cli::Parsed;
 use std::ffi::OsString;
@@ -28,40 +27,28 @@ pub struct Args {
     pub scene: String,
     /// Picture width and height in pixels.
     pub size_px: [u32; 2],
-    /// Samples per pixel.
-    pub samples: u8,
     /// Camera; `None` selects the first camera of the scene, or else an orbit.
     pub camera: Option<CameraChoice>,
     /// Requires a camera of the file.
     pub camera_from_gltf: bool,
+    /// Settings of the frame, without shadows.
+    pub frame: FrameSettings,
     /// Environment, sun, background and exposure.
     pub lighting: Lighting,
-    /// Quality of image-based light and shading.
-    pub quality: Quality,
-    /// Single shading options.
-    pub shading: Shading,
-    /// Exposure compensation, vignette, grading, tone curve and dither.
-    pub post: PostSettings,
-    /// Grading and tone curve as specified; [`Args::post`] contains them.
+    /// Table of color grading.
     pub grade: Grade,
-    /// Runs post-processing in the color pass's shader where possible.
-    pub inline: bool,
     pub alias: Alias,
     /// Number of recording threads; 0 for the number of cores.
     pub threads: usize,
     /// Rounds inlined radiance to the precision of the HDR format.
     pub round_hdr: bool,
-    /// Runs every post-processing effect as a pass of its own.
-    pub split_post: bool,
     /// Compares the costs of post-processing instead of rendering a picture.
     pub compare_post: bool,
     /// Shadow options.
     pub shadows: Shadows,
-    /// Ambient occlusion, reflections, glass, fog, lens effects and anti-aliasing.
+    /// Lens dirt and dynamic resolution.
     pub effects: Effects,
-    /// Settings of the frame before options override them.
-    pub base: Settings,
-    /// File of the base settings.
+    /// File of the frame's settings.
     pub settings: Option<PathBuf>,
     /// Enabled and disabled effects, and additional outputs.
     pub decide: Decide,
@@ -69,8 +56,6 @@ pub struct Args {
     pub variant: Option<String>,
     /// Animation and its time.
     pub animation: AnimationTime,
-    /// Enables FXAA.
-    pub fxaa: bool,
     /// Number of measured frames.
     pub frames: u32,
     /// Path of the picture.
@@ -135,33 +120,25 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         Parsed::Given(given) => given,
     };
     let (frame, settings) = decide::base(&given)?;
-    let base = frame.map_or(Settings::default(), |frame| frame.settings);
     let explicit = ExplicitOptions::of(&given);
     let mut found = Args {
         scene: String::new(),
         size_px: [1280, 720],
-        samples: 4,
         camera: None,
         camera_from_gltf: false,
+        frame: FrameSettings { settings: Settings { samples: 4, ..Settings::DEFAULT }, ..FrameSettings::DEFAULT },
         lighting: Lighting::default(),
-        quality: Quality::default(),
-        shading: Shading::default(),
-        post: PostSettings::DEFAULT,
         grade: Grade::default(),
-        inline: true,
         alias: Alias::Pool,
         threads: 0,
         round_hdr: false,
-        split_post: false,
         compare_post: false,
         shadows: Shadows::default(),
         effects: Effects::default(),
-        base,
         settings,
         decide: Decide::default(),
         variant: None,
         animation: AnimationTime::default(),
-        fxaa: true,
         frames: 8,
         out: PathBuf::from("render.png"),
         linear_out: None,
@@ -176,8 +153,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         words,
         trial: false,
     };
-    if let Some(frame) = &frame {
-        found.begin_with(frame);
+    if let Some(frame) = frame {
+        (found.frame, found.shadows) = (frame, Shadows::with(frame.settings.shadows));
     }
     let mut plan: Option<PathBuf> = None;
     let mut shade = String::new();
@@ -191,20 +168,19 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         match item.name() {
             "SCENE" => found.scene = item.text()?,
             "size" => found.size_px = size(&item)?,
-            "msaa" => found.samples = samples(&item)?,
             "camera" => found.camera = Some(camera(&item.text()?)?),
             "camera-from-gltf" => found.camera_from_gltf = true,
-            "quality" => found.quality = quality(&item)?,
             "shade" => shade = item.text()?,
             "precision" => numbers = Some(precision(&item)?),
-            "compensation" | "vignette" | "dither" => field(&item, &mut found.post)?,
+            "quality" | "inline" => field(&item, &mut found.frame)?,
+            "msaa" => field(&item, &mut found.frame.settings)?,
+            "compensation" | "vignette" | "dither" => field(&item, &mut found.frame.settings.post)?,
             "alias" => found.alias = alias(&item)?,
             "threads" => found.threads = threads(&item)?,
-            "inline" => found.inline = switch(&item)?,
             "round-hdr" => found.round_hdr = true,
-            "split-post" => found.split_post = true,
+            "split-post" => found.frame.settings.split_post = true,
             "compare-post" => found.compare_post = true,
-            "no-fxaa" => found.fxaa = false,
+            "no-fxaa" => found.frame.settings.fxaa = false,
             "frames" => found.frames = frames(&item)?,
             "out" => found.out = with_ending(item.raw().into(), "--out", &["png"])?,
             "linear-out" => found.linear_out = Some(with_ending(item.raw().into(), "--linear-out", &["exr"])?),
@@ -217,12 +193,12 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             name => {
                 let taken = found.lighting.take(&item)?
                     || found.shadows.take(&item)?
-                    || found.effects.take(&item)?
                     || found.animation.take(&item)?
-                    || found.grade.take(&item)?
+                    || found.grade.take(&mut found.frame.settings.post, &item)?
                     || found.decide.take(&item)?
                     || found.budget.take(&item)?
-                    || found.debug.take(&item)?;
+                    || found.debug.take(&item)?
+                    || found.effects.take(&mut found.frame, &item)?;
                 if !taken {
                     return Err(format!("internal error: no module has --{name}"));
                 }
@@ -240,11 +216,13 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
     }
     explicit.check(&found)?;
     found.keep_linear()?;
-    found.grade.apply(&mut found.post)?;
-    let chosen = if explicit.has("quality") { found.quality.shading() } else { found.shading };
-    found.shading = chosen;
-    fields("shade", &shade, &mut found.shading)?;
-    found.shading.precision = numbers.unwrap_or(found.shading.precision);
+    found.grade.check(&found.frame.settings.post)?;
+    let shading = &mut found.frame.settings.shading;
+    if explicit.has("quality") {
+        *shading = found.frame.quality.shading();
+    }
+    fields("shade", &shade, shading)?;
+    shading.precision = numbers.unwrap_or(shading.precision);
     if found.compare_post && !explicit.has("size") {
         found.size_px = [1920, 1080];
     }
@@ -273,6 +251,7 @@ impl Args {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use framegraph_passes::LightSearch;
 
     fn args(words: &[&str]) -> Result<Args, String> {
         match parse(words.iter().map(OsString::from))? {
@@ -284,8 +263,20 @@ mod tests {
     #[test]
     fn defaults_need_no_file() {
         let found = args(&[]).expect("no argument is needed");
-        assert_eq!((found.scene.as_str(), found.size_px, found.samples), ("spheres", [1280, 720], 4));
+        assert_eq!((found.scene.as_str(), found.size_px, found.frame.settings.samples), ("spheres", [1280, 720], 4));
         assert_eq!((found.plan, found.dot), (Some("render.plan.txt".into()), Some("render.plan.dot".into())));
+    }
+
+    #[test]
+    fn effects_are_set_by_their_options() {
+        let found = |words: &[&str]| args(words).map(|found| found.frame);
+        let lights = |words: &[&str]| found(words).map(|frame| frame.lights);
+        assert_eq!((lights(&[]), lights(&["--lights", "all"])), (Ok(LightSearch::default()), Ok(LightSearch::All)));
+        let fog = |words: &[&str]| found(words).map(|frame| frame.settings.fog.map(|fog| fog.density));
+        assert_eq!((fog(&[]), fog(&["--fog", "on:density=0.5"])), (Ok(None), Ok(Some(0.5))));
+        assert_eq!(fog(&["--preset", "ultra", "--fog", "off"]), Ok(None));
+        let preset = found(&["--preset", "low"]);
+        assert_eq!(preset, Ok(framegraph_passes::Preset::Low.frame()));
     }
 
     #[test]
@@ -327,7 +318,7 @@ mod tests {
 
     #[test]
     fn invalid_options_are_reported_in_one_line() {
-        let cases: [(&[&str], &str); 46] = [
+        let cases: [(&[&str], &str); 48] = [
             (&["--threads", "0"], "--threads 0"),
             (&["--size", "0x0"], "--size 0x0"),
             (&["--size", "12"], "--size 12"),
@@ -346,10 +337,12 @@ mod tests {
             (&["--precision", "f64"], "--precision f64"),
             (&["--shade", "gloss=1"], "--shade gloss"),
             (&["--shade", "bands=3,floor"], "--shade floor"),
-            (&["--vignette", "-1"], "--vignette=-1"),
+            (&["--vignette", "-1"], "--vignette -1"),
             (&["--grade", "hue=1"], "--grade hue"),
             (&["--ao", "ssao"], "--ao ssao"),
             (&["--ao", "sao:gloss=1"], "--ao gloss"),
+            (&["--lights", "some"], "--lights some: "),
+            (&["--lights", "froxels:far=1"], "--lights near=5: expected less than `far`"),
             (&["--transparency", "exact"], "--transparency exact: unknown choice"),
             (&["--transparency", "peeled:layers=0"], "--transparency layers=0"),
             (&["--glass-layers", "0"], "--glass-layers 0"),

@@ -267,38 +267,20 @@ fn verdict(bound: Bound, Settled { chosen, trial, holds }: &Settled, adapter: &s
 impl Args {
     /// Returns the frame settings of the command line.
     pub fn frame(&self) -> FrameSettings {
-        let settings = framegraph_passes::Settings {
-            samples: self.samples,
-            shading: self.shading,
-            shadows: self.shadows.asked(),
-            occlusion: self.effects.occlusion,
-            reflections: self.effects.reflections,
-            glass_layers: self.effects.glass_layers,
-            transparency: self.effects.transparency,
-            fxaa: self.fxaa,
-            ..self.base
-        };
-        FrameSettings {
-            quality: self.quality,
-            lights: self.lighting.lights,
-            lod_error_px: self.effects.lod_error_px,
-            visible_layers: self.effects.visible_layers,
-            inline: self.inline,
-            settings,
-        }
+        let settings = framegraph_passes::Settings { shadows: self.shadows.asked(), ..self.frame.settings };
+        FrameSettings { settings, ..self.frame }
     }
 
     /// Returns the command line with the settings of `frame` that the search chooses.
     pub fn with(&self, frame: &FrameSettings) -> Self {
         let mut args = self.clone();
-        let settings = frame.settings;
-        (args.quality, args.shading) = (frame.quality, settings.shading);
-        (args.samples, args.fxaa) = (settings.samples, settings.fxaa);
-        args.shadows.hold(settings.shadows);
-        args.effects.occlusion = settings.occlusion;
-        args.effects.reflections = settings.reflections;
-        args.effects.glass_layers = settings.glass_layers;
-        args.base.hdr_format = settings.hdr_format;
+        let (own, chosen) = (&mut args.frame.settings, frame.settings);
+        (own.samples, own.fxaa, own.shading) = (chosen.samples, chosen.fxaa, chosen.shading);
+        (own.occlusion, own.reflections, own.glass_layers) =
+            (chosen.occlusion, chosen.reflections, chosen.glass_layers);
+        own.hdr_format = chosen.hdr_format;
+        args.frame.quality = frame.quality;
+        args.shadows.hold(chosen.shadows);
         args.trial = true;
         args
     }

@@ -43,7 +43,7 @@ pub fn compare_post(args: &Args) -> Result<(), Failure> {
     let seen = load::view(args, &loaded).map_err(input)?;
     let gpu = gpu?;
     program::line(format_args!("adapter: {}", gpu.describe()));
-    args.shading.precision.check(&gpu).map_err(|error| input(format!("--{error}")))?;
+    args.frame.settings.shading.precision.check(&gpu).map_err(|error| input(format!("--{error}")))?;
     let lighting = load::light(&gpu, args, &loaded).map_err(input)?;
     let moment = CameraView::new(&loaded.scene, &lighting.image, &loaded.background, &seen);
     // Enable every effect, so that each becomes a pass in the last variant.

@@ -1,10 +1,6 @@
 //! Options of the whole frame: presets, settings files, and feature culling.
 
-use crate::args::Args;
-use crate::effects::Effects;
-use crate::grade::Grade;
 use crate::load::Loaded;
-use crate::shadows::Shadows;
 use framegraph::Caps;
 use framegraph_passes::effects::exposure::Measurement;
 use framegraph_passes::feature_culling::{EnvironmentSummary, SceneSummary, decide};
@@ -186,47 +182,6 @@ pub fn base(given: &Given) -> Result<(Option<FrameSettings>, Option<PathBuf>), S
             let frame = FrameSettings::from_ron(&shown, &text).map_err(|error| format!("--settings {error}"))?;
             Ok((Some(frame), Some(path.into())))
         }
-    }
-}
-
-impl Args {
-    /// Starts with the settings of a frame, which other options override.
-    pub fn begin_with(&mut self, frame: &FrameSettings) {
-        let FrameSettings { quality, lights, lod_error_px, visible_layers, inline, settings } = *frame;
-        (self.quality, self.lighting.lights, self.inline) = (quality, lights, inline);
-        (self.samples, self.shading, self.post, self.fxaa) =
-            (settings.samples, settings.shading, settings.post, settings.fxaa);
-        (self.shadows, self.grade) = (Shadows::with(settings.shadows), Grade::with(&settings.post));
-        self.split_post = settings.split_post;
-        let Settings {
-            occlusion,
-            reflections,
-            tone_resolve,
-            taa,
-            upscale,
-            dof,
-            bloom,
-            fog,
-            glass_layers,
-            transparency,
-            ..
-        } = settings;
-        let own = Effects::default();
-        self.effects = Effects {
-            occlusion,
-            reflections,
-            tone_resolve,
-            taa,
-            upscale,
-            dof,
-            bloom,
-            fog,
-            lod_error_px,
-            visible_layers,
-            glass_layers,
-            transparency,
-            ..own
-        };
     }
 }
 

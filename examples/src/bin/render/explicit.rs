@@ -184,7 +184,7 @@ impl ExplicitOptions {
                 return Err(format!("--{option}: requires {others}"));
             }
         }
-        if args.round_hdr && !args.inline {
+        if args.round_hdr && !args.frame.inline {
             return Err("--round-hdr: cannot be used with --inline off; radiance is stored then".into());
         }
         if args.lighting.sun == Sun::InMap && !matches!(args.lighting.environment, EnvironmentSource::File(_)) {

@@ -2,7 +2,7 @@
 
 use crate::parse::fields;
 use framegraph_passes::PostSettings;
-use framegraph_passes::grading::{GradeBy, Look, tone_map};
+use framegraph_passes::grading::{GradeBy, tone_map};
 use framegraph_shaders::layout::EdgeFade;
 use program::clap::Arg;
 use program::cli::{Item, option};
@@ -14,18 +14,15 @@ pub fn options() -> Vec<Arg> {
         option(
             "tone-map",
             "NAME",
-            "linear, hill (ACES fit by Hill; default), filmic, neutral, aces (as in Filament), aces-legacy \
-             (brighter by \
-             1/0.6), linear-2020 (clipped in Rec.2020), agx, agx-golden, agx-punchy, gt7, display-range (one color \
-             per \
-             stop), mobile (cheap, with the sRGB encoding), or generic[:CONTRAST:IN:OUT:WHITE]",
+            "linear, hill (ACES fit by Hill; default), filmic, neutral, aces (as in Filament), aces-legacy (brighter \
+             by 1/0.6), linear-2020 (clipped in Rec.2020), agx, agx-golden, agx-punchy, gt7, display-range (one color \
+             per stop), mobile (cheap, with the sRGB encoding), or generic[:CONTRAST:IN:OUT:WHITE]",
         ),
         option(
             "grade",
             "KEY=X,...",
-            "Color grading in Filament's order, in Rec.2020, such as contrast=1.2,slope=1:1:0.9; `--grade help` \
-             lists the \
-             keys",
+            "Color grading in Filament's order, in Rec.2020, such as contrast=1.2,slope=1:1:0.9; `--grade help` lists \
+             the keys",
         ),
         option(
             "grade-by",
@@ -43,36 +40,28 @@ pub fn options() -> Vec<Arg> {
     all.into_iter().map(|option| option.help_heading("Grading")).collect()
 }
 
-/// Options of color grading, tone curve and edge fade.
+/// Options of color grading beside the settings of the frame.
 #[derive(Clone, Debug, Default)]
 pub struct Grade {
-    look: Look,
-    by: GradeBy,
-    edge_fade: Option<EdgeFade>,
     /// Path of a color lookup table.
     pub color_table: Option<PathBuf>,
 }
 
 impl Grade {
-    /// Starts with the grading of a frame.
-    pub fn with(post: &PostSettings) -> Self {
-        Self { look: post.look, by: post.by, edge_fade: post.edge_fade, color_table: None }
-    }
-
-    /// Parses the value of an option of this module; returns false for other options.
+    /// Parses the value of an option of this module into `post` or `self`; returns false for other options.
     ///
     /// # Errors
     /// One line that names the option and the expected value.
-    pub fn take(&mut self, item: &Item) -> Result<bool, String> {
+    pub fn take(&mut self, post: &mut PostSettings, item: &Item) -> Result<bool, String> {
         match item.name() {
             "look" => self.color_table = Some(item.raw().into()),
             "tone-map" => {
-                self.look.tone_map = tone_map(&item.text()?).map_err(|error| format!("--tone-map {error}"))?;
+                post.look.tone_map = tone_map(&item.text()?).map_err(|error| format!("--tone-map {error}"))?;
             }
-            "grade-by" => self.by = GradeBy::from_text(&item.text()?).map_err(|error| format!("--grade-{error}"))?,
-            "grade" => fields("grade", &item.text()?, &mut self.look)?,
+            "grade-by" => post.by = GradeBy::from_text(&item.text()?).map_err(|error| format!("--grade-{error}"))?,
+            "grade" => fields("grade", &item.text()?, &mut post.look)?,
             "edge-fade" => {
-                let fade = self.edge_fade.get_or_insert(EdgeFade::DEFAULT);
+                let fade = post.edge_fade.get_or_insert(EdgeFade::DEFAULT);
                 fields("edge-fade", &item.text()?, fade)?;
             }
             _ => return Ok(false),
@@ -80,16 +69,15 @@ impl Grade {
         Ok(true)
     }
 
-    /// Writes the options into the post-processing settings.
+    /// Checks the options against each other.
     ///
     /// # Errors
     /// A color lookup table is specified without `--grade-by table`.
-    pub fn apply(&self, post: &mut PostSettings) -> Result<(), String> {
-        if self.color_table.is_some() && self.by == GradeBy::Direct {
-            return Err("--look: requires a lookup table; add --grade-by table".into());
+    pub fn check(&self, post: &PostSettings) -> Result<(), String> {
+        match (&self.color_table, post.by) {
+            (Some(_), GradeBy::Direct) => Err("--look: requires a lookup table; add --grade-by table".into()),
+            _ => Ok(()),
         }
-        (post.look, post.by, post.edge_fade) = (self.look, self.by, self.edge_fade);
-        Ok(())
     }
 }
 
@@ -99,10 +87,9 @@ mod tests {
     use framegraph_shaders::layout::{Grading, ToneMap};
 
     fn parsed(words: &[&str]) -> Result<PostSettings, String> {
-        let mut grade = Grade::default();
-        crate::parse::taken(options(), words, |item| grade.take(item))?;
-        let mut post = PostSettings::DEFAULT;
-        grade.apply(&mut post)?;
+        let (mut grade, mut post) = (Grade::default(), PostSettings::DEFAULT);
+        crate::parse::taken(options(), words, |item| grade.take(&mut post, item))?;
+        grade.check(&post)?;
         Ok(post)
     }
 

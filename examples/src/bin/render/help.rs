@@ -62,8 +62,7 @@ fn camera() -> Vec<Arg> {
             "camera",
             "CAMERA",
             "A camera of the scene by name, `orbit` (frames the whole scene), or EX,EY,EZ:TX,TY,TZ:FOVY with eye and \
-             target in meters and the vertical field of view in degrees; default: the first camera of the scene, \
-             else \
+             target in meters and the vertical field of view in degrees; default: the first camera of the scene, else \
              orbit",
         ),
         flag("camera-from-gltf", "Require a camera of the file: the first, or the one named by --camera"),
@@ -77,8 +76,7 @@ fn shading() -> impl Iterator<Item = Arg> {
             "quality",
             "low|high|ultra",
             "Shading quality: `low` as Filament on phones, `high` as on desktops, `ultra` with more bands of \
-             irradiance \
-             and finer reflections (high)",
+             irradiance and finer reflections (high)",
         ),
         option("shade", "KEY=X,...", "Single shading options; `--shade help` lists the keys"),
         option(
@@ -105,8 +103,7 @@ fn post() -> impl Iterator<Item = Arg> {
         flag(
             "compare-post",
             "Print the cost of post-processing inlined, in one pass, and in one pass per effect, at one and four \
-             samples, \
-             instead of rendering a picture (--size 1920x1080)",
+             samples, instead of rendering a picture (--size 1920x1080)",
         ),
         flag("no-fxaa", "Disable FXAA"),
     ];
@@ -131,8 +128,7 @@ fn execution() -> impl Iterator<Item = Arg> {
             "memory",
             "BYTES",
             "Memory limit of loading: files, decoding, mip levels, upload; such as 512MiB or 2GB (half of the \
-             machine's \
-             memory)",
+             machine's memory)",
         ),
         flag("allow-outside", "Allow buffers and images outside the folder of the scene"),
     ];
@@ -169,10 +165,7 @@ mod tests {
     fn the_manual_has_all_options() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/render.md");
         let manual = std::fs::read_to_string(path).expect("the manual");
-        let (before, rest) = manual.split_once("<!-- help -->\n```text\n").expect(
-            "the manual has a block of \
-        options",
-        );
+        let (before, rest) = manual.split_once("<!-- help -->\n```text\n").expect("the manual has a block of options");
         let (block, after) = rest.split_once("\n```\n<!-- end -->").expect("the block ends");
         let help = program::cli::help(super::command());
         let help: Vec<_> = help.trim_end().lines().map(str::trim_end).collect();

@@ -1,6 +1,5 @@
 //! Options of the environment, the sun, the background and the exposure.
 
-use framegraph_passes::LightSearch;
 use framegraph_scene::SunHalo;
 use framegraph_scene::camera::{EV100_RANGE, ev100_from_settings};
 use glam::DVec3;
@@ -151,15 +150,12 @@ pub struct Lighting {
     pub background: BackgroundSource,
     /// Exposure value at ISO 100; `None` meters it.
     pub ev100: Option<f32>,
-    /// Method by which shading finds punctual lights.
-    pub lights: LightSearch,
 }
 
 impl Default for Lighting {
     fn default() -> Self {
-        let (environment, background, lights) =
-            (EnvironmentSource::Sky, BackgroundSource::Environment, LightSearch::default());
-        Self { environment, intensity: 1.0, sun: Sun::FromScene, disk: Disk::Own, background, ev100: None, lights }
+        let (environment, background) = (EnvironmentSource::Sky, BackgroundSource::Environment);
+        Self { environment, intensity: 1.0, sun: Sun::FromScene, disk: Disk::Own, background, ev100: None }
     }
 }
 
@@ -174,9 +170,6 @@ impl Lighting {
             "ibl-intensity" => self.intensity = crate::parse::number(item, 0.0..=1e6)?,
             "sun" => self.sun = sun(&item.text()?)?,
             "sun-disk" => self.disk = disk(&item.text()?)?,
-            "lights" => {
-                self.lights = LightSearch::parse(&item.text()?).map_err(|error| format!("--lights {error}"))?;
-            }
             "background" => self.background = background(&item.text()?)?,
             name @ ("ev100" | "exposure") => {
                 if self.ev100.is_some() {
@@ -332,12 +325,6 @@ mod tests {
     }
 
     #[test]
-    fn the_light_search_is_parsed() {
-        let found = |words: &[&str]| taken(words).map(|found| found.lights);
-        assert_eq!((found(&[]), found(&["--lights", "all"])), (Ok(LightSearch::default()), Ok(LightSearch::All)));
-    }
-
-    #[test]
     fn the_sun_has_a_direction_of_any_length() {
         for (text, degrees) in [("0,3e200,-4e200:5000", SOLAR_DIAMETER_DEG), ("0,6e-300,-8e-300:5000:2", 2.0)] {
             let Ok(Sun::Custom { toward, illuminance_lux, diameter_deg }) = sun(text) else { panic!("{text}") };
@@ -366,7 +353,7 @@ mod tests {
 
     #[test]
     fn invalid_options_are_reported() {
-        let cases: [(&[&str], &str); 24] = [
+        let cases: [(&[&str], &str); 22] = [
             (&["--environment"], "--environment: missing FILE"),
             (&["--environment", "uniform:1,2"], "--environment uniform 1,2"),
             (&["--environment", "uniform:1,2,-3"], "--environment uniform 1,2,-3"),
@@ -380,8 +367,6 @@ mod tests {
             (&["--sun", "0,1,0:1:99"], "--sun 0,1,0:1:99: ANGLE"),
             (&["--sun", "0,1,0:1:1:1"], "--sun 0,1,0:1:1:1"),
             (&["--sun"], "--sun: missing X,Y,Z:LUX"),
-            (&["--lights", "some"], "--lights some: "),
-            (&["--lights", "froxels:far=1"], "--lights near=5: expected less than `far`"),
             (&["--background", "blue"], "--background blue"),
             (&["--background", "1,2,3,4"], "--background 1,2,3,4"),
             (&["--exposure", "16,1/0,100"], "--exposure 16,1/0,100"),

@@ -49,7 +49,7 @@ pub fn colors(args: &Args) -> Result<Option<ColorTable>, String> {
 pub fn load(args: &Args, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let mut shown = Shown::default();
     let mut scene = Scene::open_with(&args.scene, options, &mut |p| show(&mut shown, p))?;
-    if args.effects.lod_error_px > 0.0 {
+    if args.frame.lod_error_px > 0.0 {
         scene.make_levels(&mut |p| show(&mut shown, p))?;
     }
     let asked = &args.lighting;
@@ -135,13 +135,13 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
     let shadows = args.shadows.of(&loaded.scene, loaded.environment.sun.as_ref(), camera.eye);
     Ok(ViewSettings {
         camera,
-        size_px: args.effects.drawn_px(args.size_px),
+        size_px: args.frame.settings.drawn_px(args.size_px),
         ev100: args.lighting.ev100.unwrap_or(loaded.metered_ev100),
         environment_intensity: args.lighting.intensity,
         shadows,
-        lights: args.lighting.lights,
-        lod_error_px: args.effects.lod_error_px,
-        visible_layers: args.effects.visible_layers,
+        lights: args.frame.lights,
+        lod_error_px: args.frame.lod_error_px,
+        visible_layers: args.frame.visible_layers,
     })
 }
 
@@ -151,7 +151,7 @@ pub fn view(args: &Args, loaded: &Loaded) -> Result<ViewSettings, String> {
 /// One line that names the failure.
 pub fn light(gpu: &Gpu, args: &Args, loaded: &Loaded) -> Result<Lighting, LightingError> {
     let mut shown = Shown::default();
-    let settings = args.shading.light(args.quality);
+    let settings = args.frame.settings.shading.light(args.frame.quality);
     let lighting =
         Lighting::new(gpu, &loaded.environment, &settings, &Cache::from_env(), &mut |p| show(&mut shown, p))?;
     shown.clear();

@@ -1,6 +1,6 @@
 //! Parsing of option values.
 
-use framegraph_passes::{Precision, Quality, SettingsTable};
+use framegraph_passes::{OptionError, Precision, SettingsTable};
 use program::cli::Item;
 use std::ops::RangeInclusive;
 
@@ -18,7 +18,10 @@ pub fn number(item: &Item, range: RangeInclusive<f32>) -> Result<f32, String> {
 /// # Errors
 /// One line that names the option and the accepted values.
 pub fn field(item: &Item, settings: &mut impl SettingsTable) -> Result<(), String> {
-    settings.set(item.name(), &item.text()?).map_err(|error| format!("--{error}"))
+    settings.set(item.name(), &item.text()?).map_err(|error| match error {
+        OptionError::Value { key, value, takes } => format!("--{key} {value}: expected {takes}"),
+        error => format!("--{error}"),
+    })
 }
 
 /// Changes settings by pairs of `KEY=X`.
@@ -27,26 +30,6 @@ pub fn field(item: &Item, settings: &mut impl SettingsTable) -> Result<(), Strin
 /// One line that names the option, the key and the accepted values.
 pub fn fields(option: &str, text: &str, settings: &mut impl SettingsTable) -> Result<(), String> {
     settings.set_all(text).map_err(|error| format!("--{option} {error}"))
-}
-
-/// Parses `on` or `off`.
-///
-/// # Errors
-/// One line that names the option.
-pub fn switch(item: &Item) -> Result<bool, String> {
-    item.parse("`on` or `off`", |text| match text {
-        "on" => Some(true),
-        "off" => Some(false),
-        _ => None,
-    })
-}
-
-/// Parses a shading quality.
-///
-/// # Errors
-/// One line that lists the qualities.
-pub fn quality(item: &Item) -> Result<Quality, String> {
-    item.parse(&format!("one of {}", Quality::ALL.map(Quality::name).join(", ")), Quality::from_name)
 }
 
 /// Parses a shading precision.

@@ -84,7 +84,7 @@ impl Prepared {
     /// Returns the options for compiling plans and creating executors.
     pub fn options(&self, args: &Args) -> (Options, ExecutorOptions) {
         let [width, height] = args.size_px;
-        let mut options = Options { inline: args.inline, alias: args.alias, ..Options::for_frame(width, height) };
+        let mut options = Options { inline: args.frame.inline, alias: args.alias, ..Options::for_frame(width, height) };
         let mut execute = ExecutorOptions { timing: true, ..ExecutorOptions::default() };
         args.debug.apply(&mut options, &mut execute);
         (options, execute)
@@ -124,7 +124,7 @@ pub fn prepare(args: &Args, outputs: &mut Outputs) -> Result<Prepared, Failure> 
     if !args.trial {
         program::line(format_args!("adapter: {}", gpu.describe()));
     }
-    args.shading.precision.check(&gpu).map_err(|error| input(format!("--{error}")))?;
+    args.frame.settings.shading.precision.check(&gpu).map_err(|error| input(format!("--{error}")))?;
     let [width, height] = args.size_px;
     let max = gpu.caps().max_texture_texels;
     if width.max(height) > max {
@@ -354,24 +354,6 @@ fn outputs(args: &Args) -> Result<Outputs, Failure> {
 
 /// Returns the standard frame settings of the command line and the scene, before feature culling.
 pub fn settings(args: &Args, loaded: &Loaded, seen: &ViewSettings) -> Settings {
-    let settings = Settings {
-        samples: args.samples,
-        shading: args.shading,
-        shadows: seen.shadows,
-        occlusion: args.effects.occlusion,
-        reflections: args.effects.reflections,
-        tone_resolve: args.effects.tone_resolve,
-        dof: args.effects.dof,
-        bloom: args.effects.bloom,
-        fog: args.effects.fog,
-        taa: args.effects.taa,
-        upscale: args.effects.upscale,
-        glass_layers: args.effects.glass_layers,
-        transparency: args.effects.transparency,
-        fxaa: args.fxaa,
-        split_post: args.split_post,
-        post: args.post,
-        ..args.base
-    };
-    args.decide.of(settings).for_scene(&loaded.scene, args.effects.drawn_px(args.size_px))
+    let settings = Settings { shadows: seen.shadows, ..args.frame.settings };
+    args.decide.of(settings).for_scene(&loaded.scene, args.frame.settings.drawn_px(args.size_px))
 }

@@ -2,6 +2,7 @@
 
 use crate::args::Args;
 use crate::decide::Sequence;
+use crate::effects::enlarging;
 use crate::kept_shadows::{OwnResources, declare};
 use crate::load;
 use crate::run::{Failure, Prepared, device, executed, input};
@@ -63,7 +64,7 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         let mut seen = around(&prepared.seen, center, turned);
         if let Some((controller, scales)) = &dynamic {
             let next = scales[controller.level()];
-            let asked = Settings { upscale: args.effects.enlarging(next), ..prepared.asked };
+            let asked = Settings { upscale: enlarging(args.frame.settings.upscale, next), ..prepared.asked };
             seen.size_px = asked.drawn_px(args.size_px);
             // A smaller picture has fewer mip levels.
             prepared.asked = asked.for_scene(&prepared.loaded.scene, seen.size_px);

@@ -22,8 +22,7 @@ pub fn options() -> Vec<Arg> {
             "shadow",
             "KEY=X,...",
             "Settings of shadow maps; `--shadow help` lists the keys. keep=on draws maps in the first frame, later \
-             only \
-             those that change (off)",
+             only those that change (off)",
         ),
         flag("show-cascades", "Tint surfaces by their cascade"),
         flag("no-shadows", "Same as --shadows off"),

@@ -1,8 +1,8 @@
 //! Parsing of single option values.
 
 use framegraph::Alias;
+use framegraph_check::budget::bytes;
 use framegraph_scene::CameraChoice;
-use program::bytes;
 use program::cli::Item;
 use std::str::FromStr;
 
@@ -19,14 +19,6 @@ pub fn size(item: &Item) -> Result<[u32; 2], String> {
         true => Err(format!("--size {}x{}: both sides must be at least 1", size[0], size[1])),
         false => Ok(size),
     }
-}
-
-/// Parses the number of samples per pixel.
-///
-/// # Errors
-/// One line that names the option.
-pub fn samples(item: &Item) -> Result<u8, String> {
-    item.parse("1 or 4", |text| text.parse().ok().filter(|samples| matches!(samples, 1 | 4)))
 }
 
 /// Parses the mode of memory aliasing.

@@ -74,12 +74,14 @@ pub(super) fn barriers(ctx: &RuleInput<'_>, earlier: &EarlierTenants) {
                 }
             }
         }
-        for need in needs(ctx, step) {
+        let needs = needs(ctx, step);
+        let beside: Vec<_> = needs.iter().map(|need| beside(ctx, &syncs, need.resource)).collect();
+        for (need, beside) in needs.into_iter().zip(beside) {
             let index = over.remove(&need.part);
             let barrier = index.map(|i| &rows[i]);
             let place = (step, need.resource, ctx.parts.name(need.resource, need.part));
             let owners = &earlier[need.resource.index()];
-            judge(ctx, &syncs, &need, barrier, owners, place.into());
+            judge(ctx, &syncs, &need, barrier, owners, beside, place.into());
             let sync = &mut syncs[need.part];
             settle(sync, &need, index.zip(barrier), step);
             if let Some(barrier) = sync.barrier {
@@ -196,6 +198,13 @@ fn needs(ctx: &RuleInput<'_>, step: StepId) -> Vec<PartUse> {
     needs.into_values().collect()
 }
 
+/// Returns the last step and the pending stages of the imports that may alias a resource, before a step.
+fn beside(ctx: &RuleInput<'_>, syncs: &[Sync], resource: ResourceId) -> Option<(StepId, Stages)> {
+    let others = ctx.graph.resource_ids().filter(|other| ctx.graph.are_aliases(resource, *other));
+    let used = others.flat_map(|other| &syncs[ctx.parts.all(other)]).filter(|sync| !sync.last.is_none());
+    used.map(|sync| (sync.last, sync.pending)).reduce(|a, b| (a.0.max(b.0), a.1.union(b.1)))
+}
+
 /// Checks one use against the barrier before it, if any.
 fn judge(
     ctx: &RuleInput<'_>,
@@ -203,11 +212,13 @@ fn judge(
     need: &PartUse,
     barrier: Option<&Barrier>,
     owners: &[ResourceId],
+    beside: Option<(StepId, Stages)>,
     place: Place,
 ) {
     let sync = syncs[need.part];
     let first = sync.last.is_none();
-    let conflict = first || need.writes || sync.wrote || sync.state != need.state;
+    let overtaken = beside.is_some_and(|(step, _)| first || step > sync.last);
+    let conflict = first || need.writes || sync.wrote || sync.state != need.state || overtaken;
     let Some(barrier) = barrier else {
         // A buffer has no layout, so new memory needs no barrier.
         let external = ctx.placement(need.resource) == Placement::External;
@@ -236,6 +247,10 @@ fn judge(
             let any = owners.iter().copied().find(among);
             (after, before) = (latest, named.or(any).unwrap_or(before));
         }
+    }
+    if let Some((step, stages)) = beside {
+        pending = pending.union(stages);
+        after = if overtaken { step } else { after };
     }
     ctx.report.equal(barrier.from, sync.state, Rule::Barrier, place, "from");
     ctx.report.equal(barrier.to, need.state, Rule::Barrier, place, "to");

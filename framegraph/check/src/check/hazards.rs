@@ -9,6 +9,7 @@ use framegraph::access::{AccessKind, Mode};
 use framegraph::graph::PassFlags;
 use framegraph::id::{PassId, ResourceId, StepId};
 use framegraph::plan::{Attachment, Join, Placement};
+use framegraph::resource::Dimension;
 
 /// Use of a part by a pass within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -202,19 +203,22 @@ fn samples_of(ctx: &RuleInput<'_>, step: StepId, input: ResourceId) -> Vec<Resou
     found
 }
 
-/// Returns `true` if the target of an inlined pass has the shape of its input: one level, layer and sample of the same
-/// size. A slice among others does not fit.
+/// Returns `true` if the target of an inlined pass has the shape of its input: one level and sample of the same size, and
+/// a layer for each layer of the input, all of which the pass reads. A slice among others does not fit.
 pub(super) fn same_shape(ctx: &RuleInput<'_>, input: ResourceId, replaced: Replaced) -> bool {
     let (Some(from), Some(to)) = (ctx.texture(input), ctx.texture(replaced.target)) else {
         return false;
     };
     let frame = ctx.plan.frame();
-    ctx.parts.covered(replaced.target, replaced.range).count() == 1
+    let layers = usize::from(from.layers);
+    let reads = ctx.accesses_of(replaced.by).filter(|(_, access)| access.resource == input);
+    ctx.parts.covered(replaced.target, replaced.range).count() == layers
+        && reads.map(|(_, access)| ctx.parts.covered(input, access.range).count()).all(|read| read == layers)
         && replaced.range.view.is_none()
         && !replaced.range.slice
-        && ctx.parts.all(input).len() == 1
+        && ctx.parts.all(input).len() == layers
+        && from.dimension == Dimension::D2
         && to.mip_extent(frame, replaced.range.mip.into()) == from.extent.texels(frame)
-        && from.layers == 1
         && from.samples == 1
         && to.samples == 1
 }

@@ -155,7 +155,7 @@ fn placement(ctx: &RuleInput<'_>, resource: ResourceId, expected: &Planned) {
         Kind::Transient => match found {
             Placement::Unused => !used && !replaced,
             Placement::Inlined => replaced,
-            Placement::Memoryless => used && caps.memoryless && options.memoryless,
+            Placement::Memoryless => used && caps.memoryless && options.memoryless && ctx.memoryless_saves(),
             Placement::Slot(_) => used && !heap,
             Placement::Heap { .. } => used && heap,
             Placement::External | Placement::Own => false,
@@ -186,6 +186,7 @@ fn could_be_memoryless(ctx: &RuleInput<'_>, resource: ResourceId, expected: &Pla
     };
     ctx.plan.caps().memoryless
         && ctx.plan.options().memoryless
+        && ctx.memoryless_saves()
         && ctx.texture(resource).is_some_and(one_part)
         && ctx.is_transient(resource)
         && !expected.first.is_none()

@@ -8,6 +8,7 @@ use framegraph::access::{Access, AccessKind, Range};
 use framegraph::format::Format;
 use framegraph::graph::{Graph, PassFlags, PassKind};
 use framegraph::id::{PassId, ResourceId, StepId};
+use framegraph::options::Alias;
 use framegraph::plan::{Attachment, Join, Placement, Plan, Planned, Role, Step, StepPass};
 use framegraph::resource::{Kind, TextureDesc};
 
@@ -293,6 +294,12 @@ impl<'p> RuleInput<'p> {
     /// Returns the plan's row of a resource.
     pub(super) fn planned(&self, resource: ResourceId) -> &'p Planned {
         &self.plan.resources()[resource.index()]
+    }
+
+    /// Returns `true` if memoryless attachments save memory. Otherwise they are placed in a heap, if there is one.
+    pub(super) fn memoryless_saves(&self) -> bool {
+        let heap = self.plan.caps().placed && self.plan.options().alias == Alias::Heap;
+        self.plan.caps().memoryless_saves || !heap
     }
 
     /// Returns the placement of a resource.

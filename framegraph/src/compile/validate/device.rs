@@ -1,7 +1,7 @@
 //! Validation of accesses against the device: formats, bindings and buffer ranges.
 
 use crate::access::{Access, AccessKind};
-use crate::caps::{Caps, FormatCaps};
+use crate::caps::{Caps, FormatCaps, FormatTable};
 use crate::compile::bindings::{class, limits};
 use crate::compile::error::{CompileError, CompileErrors, CompileReason};
 use crate::compile::measure::Measured;
@@ -9,8 +9,11 @@ use crate::format::Format;
 use crate::graph::{Declared, PassKind, Tables};
 use crate::id::{PassId, ResourceId};
 
-/// Limits of a device, prepared for one look per access.
-pub(super) struct Allowed {
+/// Limits of a device, prepared for one look per access. Kept between compilations.
+#[derive(Debug)]
+pub(crate) struct Allowed {
+    /// The formats that `kinds` was made from.
+    formats: Option<FormatTable>,
     /// By format; the last entry is for buffers. Kinds of access that need no further check, one bit each.
     kinds: [u16; 256],
     /// Number of accesses of a pass below which no limit of bindings can be exceeded.
@@ -25,15 +28,23 @@ const FREE: u16 = {
     1 << CopySource as u16 | 1 << CopyTarget as u16
 };
 
+impl Default for Allowed {
+    fn default() -> Self {
+        Self { formats: None, kinds: [FREE; 256], few: 0, raster_storage: false }
+    }
+}
+
 impl Allowed {
     /// Prepares the checks of a device.
-    pub(super) fn on(caps: &Caps) -> Self {
-        let mut kinds = [FREE; 256];
-        for format in Format::ALL {
-            kinds[format as usize] = allowed(caps.formats.get(format));
+    pub(super) fn prepare(&mut self, caps: &Caps) {
+        if self.formats.as_ref() != Some(&caps.formats) {
+            for format in Format::ALL {
+                self.kinds[format as usize] = allowed(caps.formats.get(format));
+            }
+            self.formats = Some(caps.formats);
         }
-        let few = limits(caps).into_iter().map(|(_, max)| max).min().unwrap_or(0);
-        Self { kinds, few, raster_storage: caps.raster_storage }
+        self.few = limits(caps).into_iter().map(|(_, max)| max).min().unwrap_or(0);
+        self.raster_storage = caps.raster_storage;
     }
 
     /// Returns `true` if the device supports every access of a pass, as far as a look at each decides.
@@ -103,7 +114,7 @@ pub(super) fn accesses(graph: &Tables, caps: &Caps, measures: &[Measured], pass:
             errors.push(|| CompileError::new(graph, reason, pass, access.resource));
         }
     }
-    bindings(graph, caps, own, pass, errors);
+    bindings(graph, caps, row.kind, own, pass, errors);
 }
 
 fn texture_fault(caps: &Caps, access: &Access, format: Format, samples: u8) -> Option<CompileReason> {
@@ -147,16 +158,20 @@ fn buffer_fault(graph: &Tables, caps: &Caps, access: &Access, size: u64) -> Opti
     }
 }
 
-/// Reports passes that use more resources than a shader stage can bind.
-fn bindings(graph: &Tables, caps: &Caps, own: &[Access], pass: PassId, errors: &mut CompileErrors) {
+/// Reports passes that use more resources than their shader stages can bind. Raster passes have two stages. Only
+/// fragment shaders can write storage on every device that has raster storage.
+fn bindings(graph: &Tables, caps: &Caps, stages: PassKind, own: &[Access], pass: PassId, errors: &mut CompileErrors) {
+    let stages = if stages == PassKind::Raster { 2 } else { 1 };
     for (kind, max) in limits(caps) {
-        let is = |a: &&Access| class(graph, caps, a) == Some(kind);
-        let count = own.iter().filter(is).count() as u32;
-        if count > max {
-            let reason = CompileReason::Bindings { kind, count, max };
-            // The first resource beyond the limit.
-            let beyond = own.iter().filter(is).nth(max as usize).map_or(ResourceId::NONE, |a| a.resource);
-            errors.push(|| CompileError::new(graph, reason, pass, beyond));
-        }
+        let is = |a: &Access, written: bool| class(graph, caps, a) == Some(kind) && (!written || a.mode.writes());
+        let exceeded = [(false, max.saturating_mul(stages)), (true, max)].into_iter().find_map(|(written, max)| {
+            let count = own.iter().filter(|a| is(a, written)).count() as u32;
+            (count > max).then_some((written, count, max))
+        });
+        let Some((written, count, max)) = exceeded else { continue };
+        let reason = CompileReason::Bindings { kind, count, max, written };
+        // The first resource beyond the limit.
+        let beyond = own.iter().filter(|a| is(a, written)).nth(max as usize).map_or(ResourceId::NONE, |a| a.resource);
+        errors.push(|| CompileError::new(graph, reason, pass, beyond));
     }
 }

@@ -33,6 +33,7 @@ fn resource(plan: &Plan, names: &Names, resource: ResourceId, offset: Option<u64
         field("kind", declared.kind.word()),
         field("entry", entry),
         field("exit", exit.map(|e| if e == Exit::Keep { "keep" } else { "discard" })),
+        field("may_alias", Json::list(graph.aliases_of(resource).map(|r| names.resource(r)))),
         field("shape", shape(plan, &declared.desc, row.format)),
         field("format", plan.format(resource).map(|f| format!("{f:?}"))),
         field("extent", texture.map(|t| t.extent.texels(plan.frame()).to_vec())),

@@ -72,7 +72,7 @@ fn attachment(plan: &Plan, names: &Names, reasons: &Reasons, step: StepId, attac
         Role::ResolveDepth(mode) => ("resolve_depth", None, Some(mode.word())),
     };
     let stencil = plan.format(resource).and_then(|f| attachment.ops(f, Aspect::Stencil));
-    let (unresolve_bytes, resolve_bytes) = plan.attachment_bytes(attachment, plan.frame());
+    let moved = plan.attachment_traffic(attachment, plan.frame());
     object([
         field("resource", names.resource(resource)),
         field("role", role),
@@ -88,7 +88,7 @@ fn attachment(plan: &Plan, names: &Names, reasons: &Reasons, step: StepId, attac
         field("stencil_store", stencil.map(|(_, store)| store.word())),
         field("load_reason", reasons.sentence(plan, Subject::Load(step, resource))),
         field("store_reason", reasons.sentence(plan, Subject::Store(step, resource))),
-        field("unresolve_bytes", unresolve_bytes),
-        field("resolve_bytes", resolve_bytes),
+        field("unresolve_bytes", moved.loaded_bytes),
+        field("resolve_bytes", moved.stored_bytes),
     ])
 }

@@ -52,9 +52,8 @@ impl Ink {
     }
 }
 
-const STYLE: &str = "\
-text{font-family:'DejaVu Sans Mono',Menlo,Consolas,monospace;font-size:12px;fill:#222}\
-.t{font-size:18px;font-weight:bold}.h{font-size:14px;font-weight:bold}.f{fill:#666}.s{font-size:10px}";
+const STYLE: &str = "text{font-family:'DejaVu Sans \
+Mono',Menlo,Consolas,monospace;font-size:12px;fill:#222}.t{font-size:18px;font-weight:bold}.h{font-size:14px;font-weight:bold}.f{fill:#666}.s{font-size:10px}";
 
 /// A document under construction.
 #[derive(Debug)]

@@ -17,8 +17,10 @@ pub const DEPTH_STENCIL_FORMAT: Format = Format::Depth32FloatStencil8;
 /// Shader of the prepass.
 pub(crate) static PREPASS_SHADER: Module<'static> = library::pass("pass/prepass.wgsl").unwrap();
 
-static INTERFACE: Interface =
-    Interface { groups: &[&["frame"], &MATERIAL_BINDINGS, &["objects", "origins"]], constants: &[SurfaceDraw::TRAITS] };
+static INTERFACE: Interface = Interface {
+    groups: &[&["frame", "eyes"], &MATERIAL_BINDINGS, &["objects", "origins"]],
+    constants: &[SurfaceDraw::TRAITS],
+};
 
 /// Draws opaque and masked surfaces into a new reversed-depth texture, cleared to the far plane.
 #[derive(Clone, Copy, Debug)]
@@ -31,12 +33,14 @@ pub struct Prepass {
     pub samples: u8,
     /// Adds a stencil aspect, for materials that use stencil.
     pub stencil: bool,
+    /// Number of layers: 2 draws both eyes of a stereo view ([`CameraView::stereo`](crate::CameraView::stereo)).
+    pub layers: u16,
 }
 
 impl Default for Prepass {
     /// Returns the pass for the main view at the frame's size, with one sample per texel.
     fn default() -> Self {
-        Self { view: ViewId::MAIN, extent: Extent::FRAME, samples: 1, stencil: false }
+        Self { view: ViewId::MAIN, extent: Extent::FRAME, samples: 1, stencil: false, layers: 1 }
     }
 }
 
@@ -44,7 +48,7 @@ impl Pass for Prepass {
     type Io = Texture;
 
     fn declare(&self, pass: &mut PassBuilder<'_>) -> Result<Texture, DeclareError> {
-        new_depth(pass, self.extent, self.samples, self.stencil)
+        new_depth(pass, self.extent, self.samples, (self.stencil, self.layers))
     }
 }
 
@@ -53,10 +57,10 @@ pub(crate) fn new_depth(
     pass: &mut PassBuilder<'_>,
     extent: Extent,
     samples: u8,
-    stencil: bool,
+    (stencil, layers): (bool, u16),
 ) -> Result<Texture, DeclareError> {
     let format = if stencil { DEPTH_STENCIL_FORMAT } else { DEPTH_FORMAT };
-    let depth = pass.texture("depth", TextureDesc::new(extent, format).samples(samples));
+    let depth = pass.texture("depth", TextureDesc::new(extent, format).samples(samples).layers(layers));
     pass.depth(depth, Intent::Clear(ClearValue::FAR_REVERSED))
 }
 
@@ -96,7 +100,7 @@ fn draw_batches(
     programs: &Programs,
     cx: &mut Cx<'_>,
 ) -> Result<(), RecordError> {
-    let frame = &[Some(cx.uniform(&view.view.frame))];
+    let frame = &[Some(cx.uniform(&view.view.frame)), view.view.eyes.map(|eyes| cx.uniform(&eyes))];
     let draw = DepthDraw { shader: &PREPASS_SHADER, interface: &INTERFACE, frame, depth: Depth::NEARER, batches };
     draw.draw(view.instances(scene).with_stencil(stencil), programs, cx)
 }

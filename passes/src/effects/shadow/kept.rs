@@ -79,12 +79,12 @@ impl KeptShadows {
             let why = match before {
                 None => Redraw::First,
                 Some(before) if before == key => return None,
-                Some(before) if before.casters != key.casters => Redraw::Casters,
+                Some(before) if !before.has_casters_of(key) => Redraw::Casters,
                 Some(_) => Redraw::Light,
             };
             Some((number, why))
         };
-        (0..).zip(&shadows.keys).filter_map(why).collect()
+        (0..).zip(&shadows.keys()).filter_map(why).collect()
     }
 
     /// Declares the maps as an import, and a pass for each layer with maps to draw. The pass draws these maps, or the
@@ -113,19 +113,19 @@ impl KeptShadows {
         };
         let graph = frame.graph_mut();
         if due.is_empty() {
-            graph.note("shadow", format_args!("all {} maps are kept", shadows.keys.len()));
+            graph.note("shadow", format_args!("all {} maps are kept", shadows.maps.len()));
         }
         for (number, why) in &due {
             graph.note("shadow", format_args!("map {number} is drawn: {why}"));
         }
         let bits = due.iter().fold(0_u64, |bits, (number, _)| bits | 1 << number);
         // Maps outside of this view may be overwritten.
-        let keys = shadows.keys.iter().enumerate();
-        held.keys = keys.map(|(number, key)| (bits >> number & 1 == 0).then(|| key.clone())).collect();
+        let keys = shadows.keys().into_iter().enumerate();
+        held.keys = keys.map(|(number, key)| (bits >> number & 1 == 0).then_some(key)).collect();
         let (desc, name) = maps_desc(settings);
         let maps = frame.graph_mut().import_texture(name, desc, Entry::Defined, Exit::Keep);
         let layer = |layer: u16| {
-            let here = shadows.keys.iter().enumerate().filter(|(_, key)| key.place.layer == layer);
+            let here = shadows.maps.iter().enumerate().filter(|(_, map)| map.place.layer == layer);
             let here = here.fold(0_u64, |bits, (number, _)| bits | 1 << number);
             let only = (here & !bits != 0).then_some(bits);
             (here & bits != 0).then_some(ShadowLayer { layer, only })
@@ -145,7 +145,7 @@ impl KeptShadows {
     /// Marks the maps as drawn after the frame was executed. Without this call, they are drawn again.
     pub fn drawn(&mut self, shadows: &ViewShadows) {
         if let Some(held) = self.0.as_mut().filter(|held| held.settings == shadows.settings) {
-            held.keys = shadows.keys.iter().cloned().map(Some).collect();
+            held.keys = shadows.keys().into_iter().map(Some).collect();
         }
     }
 }

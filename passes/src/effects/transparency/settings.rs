@@ -1,9 +1,8 @@
 //! Techniques of transparency, their settings and the table of them.
 
 use crate::settings::field::{Field, choice, number};
-use crate::settings::key_value::OptionError;
 use crate::settings::place::{Place, Words, num, word};
-use crate::settings::table::{SettingsTable, method};
+use crate::settings::table::SettingsTable;
 
 /// Maximum number of peeled layers.
 pub const MAX_PEEL_LAYERS: u8 = 32;
@@ -44,15 +43,6 @@ impl Transparency {
             Self::Moments(_) => "moments",
             Self::Peeled { .. } => "peeled",
         }
-    }
-
-    /// Parses a name, with optional changes after a colon: `moments:precision=full,overestimation=0.1`,
-    /// `peeled:layers=8`.
-    ///
-    /// # Errors
-    /// Fails for an unknown name or an invalid value; the message names it and the accepted values.
-    pub fn parse(text: &str) -> Result<Self, OptionError> {
-        method(text, &[])
     }
 
     /// Returns true if the technique draws blended surfaces in separate passes, in any order.

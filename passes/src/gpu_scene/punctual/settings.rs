@@ -3,7 +3,7 @@
 use crate::settings::field::{Field, number};
 use crate::settings::key_value::OptionError;
 use crate::settings::place::{Place, num};
-use crate::settings::table::{SettingsTable, method};
+use crate::settings::table::SettingsTable;
 
 /// Method of finding the punctual lights that reach a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,21 +41,6 @@ impl FroxelSettings {
 impl LightSearch {
     /// Minimum number of lights with a finite range for which froxels are faster (`docs/design/lights.md`).
     pub const FEW: usize = 4;
-
-    /// Parses `auto`, `all` or `froxels`, the first and the last with settings: `froxels:slices=24,far=200`.
-    ///
-    /// # Errors
-    /// Fails on an unknown method or key, or an invalid value, with a message that lists the valid ones.
-    pub fn parse(text: &str) -> Result<Self, OptionError> {
-        let found: Self = method(text, &[])?;
-        match found {
-            Self::Auto(own) | Self::Froxels(own) if own.near_m >= own.far_m => {
-                let (key, value, takes) = ("near".into(), own.near_m.to_string(), "less than `far`".into());
-                Err(OptionError::Value { key, value, takes })
-            }
-            _ => Ok(found),
-        }
-    }
 }
 
 fn froxels(s: &mut LightSearch, place: fn(&mut FroxelSettings) -> Place<'_>) -> Place<'_> {
@@ -86,6 +71,16 @@ impl SettingsTable for LightSearch {
         number("far", "far_m", [1e-3, 1e6], |s: &mut Self| froxels(s, |f| num(&mut f.far_m)))
             .about("far end of the last slice"),
     ];
+
+    fn check(&self) -> Result<(), OptionError> {
+        match self {
+            Self::Auto(own) | Self::Froxels(own) if own.near_m >= own.far_m => {
+                let (key, value, takes) = ("near".into(), own.near_m.to_string(), "less than `far`".into());
+                Err(OptionError::Value { key, value, takes })
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 impl Default for LightSearch {

@@ -2,6 +2,8 @@
 
 use super::atlas::Place;
 use super::settings::ShadowSettings;
+use crate::gpu_scene::placements::Placements;
+use framegraph_scene::levels::level_of;
 use framegraph_scene::{Aabb, DrawLists, Renderables};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowViewUniforms};
 use glam::{DMat4, DVec3, DVec4};
@@ -79,6 +81,8 @@ pub(crate) enum Penumbra {
 /// A shadow map of a view, as drawn and as read by shaders.
 #[derive(Clone, Debug)]
 pub struct ShadowMap {
+    /// Transform from world to the light's clip space.
+    pub(crate) clip_from_world: DMat4,
     /// Uniforms for shading, relative to the eye.
     pub uniforms: ShadowMapUniforms,
     /// Uniforms for drawing casters, relative to the eye.
@@ -108,6 +112,7 @@ impl ShadowMap {
         };
         let warped = fitted.is_warped();
         Self {
+            clip_from_world: fitted.clip_from_world,
             uniforms: ShadowMapUniforms {
                 clip_from_world: clip_from_relative.as_mat4(),
                 linear_depth: linear.as_vec4(),
@@ -139,12 +144,39 @@ impl ShadowMap {
 }
 
 /// Inputs of a map: equal keys make equal maps.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct MapKey {
     /// Transform from world to the light's clip space.
-    pub clip_from_world: DMat4,
+    clip_from_world: DMat4,
     /// Rectangle of the map.
-    pub place: Place,
-    /// Casters: instance number, generation of the transform, and level of detail.
-    pub casters: Vec<(u32, u64, u8)>,
+    place: Place,
+    /// Instance numbers of the casters, and the level of detail of each.
+    casters: Vec<(u32, u8)>,
+    /// Transforms of all instances.
+    placements: Placements,
+}
+
+impl MapKey {
+    /// Returns the inputs of `map`.
+    pub fn new(map: &ShadowMap, placements: &Placements, levels: &[u8]) -> Self {
+        let casters = map.casters.opaque.iter().chain(&map.casters.mask);
+        Self {
+            clip_from_world: map.clip_from_world,
+            place: map.place,
+            casters: casters.map(|number| (*number, level_of(levels, *number))).collect(),
+            placements: placements.clone(),
+        }
+    }
+
+    /// Returns true if both maps draw the same casters at the same places.
+    pub fn has_casters_of(&self, other: &Self) -> bool {
+        let same = |(number, _): &(u32, u8)| self.placements.is_same(&other.placements, *number as usize);
+        self.casters == other.casters && self.casters.iter().all(same)
+    }
+}
+
+impl PartialEq for MapKey {
+    fn eq(&self, other: &Self) -> bool {
+        (self.clip_from_world, self.place) == (other.clip_from_world, other.place) && self.has_casters_of(other)
+    }
 }

@@ -166,7 +166,7 @@ impl LocalView {
             texel_m: [texel_m; 2],
             depth_m: range,
             near_over_range: near / range,
-            casters: DrawLists::of_kinds(scene, &casters),
+            casters: DrawLists::of_kinds(scene, casters),
             place,
         }
     }

@@ -17,8 +17,9 @@ pub struct ShadowMaps {
 impl ViewShadows {
     /// Returns true if both views have the same maps: equal transforms and places.
     pub(crate) fn fits(&self, other: &Self) -> bool {
-        let same =
-            |(a, b): (&super::MapKey, &super::MapKey)| (a.clip_from_world, a.place) == (b.clip_from_world, b.place);
-        self.keys.len() == other.keys.len() && self.keys.iter().zip(&other.keys).all(same)
+        self.maps
+            .iter()
+            .map(|map| (map.clip_from_world, map.place))
+            .eq(other.maps.iter().map(|map| (map.clip_from_world, map.place)))
     }
 }

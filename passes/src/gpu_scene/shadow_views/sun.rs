@@ -201,7 +201,7 @@ impl<'a> SunScene<'a> {
             let inside = |p: &DVec4| p.truncate().dot(center) + p.w + p.truncate().abs().dot(half) >= 0.0;
             slice.planes.iter().all(inside)
         };
-        for bounds in self.boxes(&self.reaching(&slice.planes)).into_iter().filter(seen) {
+        for bounds in self.scene.boxes_reaching(&slice.planes, MAX_BOXES).into_iter().filter(seen) {
             intersect(&bounds, &slice, &prism, &mut points);
         }
         points
@@ -240,7 +240,7 @@ impl<'a> SunScene<'a> {
             warp.map_or(DVec2::new(p.x, p.y), |warp| warp.apply(p.x, p.y))
         });
         let (low, high) = flat.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
-        Some(self.fitted(axes, warp, (low, high), deep, &casters))
+        Some(self.fitted(axes, warp, (low, high), deep, casters))
     }
 
     /// A sphere around the cascade, or around the scene if that is smaller, moved in whole texels.
@@ -271,7 +271,7 @@ impl<'a> SunScene<'a> {
         let casters = self.casting(axes, &sphere);
         let whole = axes.bounds(self.bounds.corners());
         let deep = (whole.min.z, whole.max.z.max(whole.min.z + MIN_EXTENT_M));
-        (!self.bounds.is_empty()).then(|| self.fitted(axes, None, (middle - half, middle + half), deep, &casters))
+        (!self.bounds.is_empty()).then(|| self.fitted(axes, None, (middle - half, middle + half), deep, casters))
     }
 
     /// Casters over a rectangle of the map that are not all behind it.
@@ -279,7 +279,9 @@ impl<'a> SunScene<'a> {
         let [right_from, right_to, up_from, up_to] = axes.prism(received);
         let before = axes.0[2].extend(-received.min.z);
         let mut casters = self.reaching(&[right_from, right_to, up_from, up_to, before]);
-        casters.retain(|number| self.casts(*number));
+        if !(self.scene.all_cast() && self.left_out.is_empty()) {
+            casters.retain(|number| self.casts(*number));
+        }
         casters
     }
 
@@ -309,7 +311,7 @@ impl<'a> SunScene<'a> {
         warp: Option<Warp>,
         (low, high): (DVec2, DVec2),
         (far, near): (f64, f64),
-        casters: &[u32],
+        casters: Vec<u32>,
     ) -> Fitted {
         let [right, up, toward] = axes.0;
         let texels = f64::from(self.settings.map_texels.max(4));

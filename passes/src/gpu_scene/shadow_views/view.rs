@@ -5,8 +5,8 @@ use super::local;
 use super::settings::{MAX_MAPS, ShadowSettings};
 use super::sun::SunScene;
 use super::volume::FitCamera;
-use framegraph_scene::levels::level_of;
-use framegraph_scene::{DrawLists, Light, LightKind, Renderables, Scene};
+use crate::gpu_scene::placements::Placements;
+use framegraph_scene::{Light, LightKind, Renderables, Scene};
 use framegraph_shaders::layout::{ShadowMapUniforms, ShadowUniforms};
 use glam::{DVec3, Vec4};
 
@@ -22,8 +22,10 @@ pub struct ViewShadows {
     pub cascades: usize,
     /// Cascades, then maps of punctual lights.
     pub maps: Vec<ShadowMap>,
-    /// Cache key of each map.
-    pub(crate) keys: Vec<MapKey>,
+    /// Transforms of all instances.
+    placements: Placements,
+    /// Level of detail of each instance; empty if all use full meshes.
+    levels: Vec<u8>,
     /// Index of the first map of each punctual light, among the maps of punctual lights.
     pub(crate) of_lights: Vec<Option<u32>>,
     /// True if the shadows of a light are weaker than 1.
@@ -62,13 +64,6 @@ impl ViewShadows {
         });
         let of_sun = settings.bulb_m.map_or(Penumbra::Disc(angle.tan()), Penumbra::Bulb);
         let of_local = Penumbra::Bulb(settings.bulb_m.unwrap_or(BULB_M));
-        let key = |fitted: &Fitted| {
-            let DrawLists { opaque, mask, .. } = &fitted.casters;
-            let stands = |i: &u32| (*i, scene.stamps()[*i as usize], 0);
-            let casters = opaque.iter().chain(mask).map(stands).collect();
-            MapKey { clip_from_world: fitted.clip_from_world, place: fitted.place, casters }
-        };
-        let keys = fitted.iter().map(key).collect();
         let map = |(i, fitted): (usize, Fitted)| {
             let penumbra = if i < cascades { of_sun } else { of_local };
             ShadowMap::new(fitted, eye, settings, penumbra)
@@ -94,14 +89,19 @@ impl ViewShadows {
             *own = map.uniforms;
         }
         let are_weak = lights.iter().copied().chain(sun).any(|light| light.held_shadow_strength() < 1.0);
-        (Self { uniforms, cascades, maps, keys, of_lights, are_weak, settings: *settings }, levels)
+        let (placements, settings) = (Placements::default(), *settings);
+        (Self { uniforms, cascades, maps, placements, levels: Vec::new(), of_lights, are_weak, settings }, levels)
     }
 
-    /// Records the level of detail of each instance, by instance number.
-    pub(crate) fn set_levels(&mut self, levels: &[u8]) {
-        for (number, _, level) in self.keys.iter_mut().flat_map(|key| &mut key.casters) {
-            *level = level_of(levels, *number);
-        }
+    /// Records the transforms of all instances, and their levels of detail by instance number.
+    pub(crate) fn set_instances(&mut self, placements: &Placements, levels: &[u8]) {
+        (self.placements, self.levels) = (placements.clone(), levels.to_vec());
+        self.placements.release();
+    }
+
+    /// Returns the inputs of each map.
+    pub(crate) fn keys(&self) -> Vec<MapKey> {
+        self.maps.iter().map(|map| MapKey::new(map, &self.placements, &self.levels)).collect()
     }
 
     /// Returns the shader data of each map of a punctual light.

@@ -42,7 +42,7 @@ pub fn colors_are_cut(mesh: &Mesh) -> bool {
     mesh.colors.iter().any(|c| c.max_element() > MAX_HALF || c.min_element() < 0.0)
 }
 
-/// Returns the rotation, scale and material of an instance. The eye-relative origin is not included.
+/// Returns the rotation, scale and material of an instance, without a translation.
 pub fn object_uniforms(instance: &Instance) -> ObjectUniforms {
     let turned = Mat4::from_mat3(DMat3::from_mat4(instance.world_from_model).as_mat3());
     ObjectUniforms { material: instance.material.index() as u32, ..ObjectUniforms::new(turned) }

@@ -7,7 +7,7 @@ use super::CameraView;
 use crate::error::PassError;
 use crate::gpu_scene::draw::InstanceSource;
 use crate::gpu_scene::indirect::draws_indirectly;
-use crate::gpu_scene::prepared::Placements;
+use crate::gpu_scene::placements::Placements;
 use crate::gpu_scene::shadow_views::ViewShadows;
 use crate::gpu_scene::streams::Instances;
 use crate::gpu_scene::upload::GpuScene;
@@ -42,7 +42,7 @@ pub struct GpuView {
     /// `layout::ObjectUniforms` of each instance, by its number; and those that were uploaded.
     objects: Buffer,
     uploaded: Placements,
-    /// Origin of each instance's mesh, relative to the eye.
+    /// Points that translations of instances are relative to, relative to the eye.
     origins: Buffer,
     /// Instance stream: `layout::ObjectAttributes` if objects are streamed, otherwise instance numbers.
     instances: Buffer,
@@ -108,7 +108,8 @@ impl GpuView {
             let offset = (first * size_of::<ObjectUniforms>()) as u64;
             gpu.queue.write_buffer(&self.objects, offset, cast_slice(piece));
         }
-        self.uploaded = placements.clone();
+        self.view.placements.release();
+        self.uploaded = self.view.placements.clone();
     }
 
     /// Returns the source that the view's instances are drawn from.

@@ -1,6 +1,6 @@
 //! Current and previous transforms of instances to clip space.
 
-use crate::gpu_scene::prepared::Placements;
+use crate::gpu_scene::placements::Placements;
 use framegraph_shaders::layout::MotionUniforms;
 use glam::{DMat4, DVec3};
 

@@ -22,8 +22,7 @@ fn ambient_light_is_scaled_and_padded() -> Result<(), Box<dyn std::error::Error>
         environment_intensity: 0.5,
         shadows: None,
         lights: LightSearch::All,
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let exposure = CameraView::empty(&settings).frame.exposure;
     for bands in [ShBands::Two, ShBands::Three, ShBands::Five] {
@@ -67,11 +66,8 @@ fn views_made_on_several_threads_are_the_same() -> Result<(), Box<dyn std::error
         camera,
         size_px: [64, 64],
         ev100: 14.0,
-        environment_intensity: 1.0,
         shadows: Some(ShadowSettings::texels(64)),
-        lights: LightSearch::default(),
-        lod_error_px: 0.0,
-        visible_layers: 1,
+        ..ViewSettings::default()
     };
     let mut prepared = PreparedScene::new(&scene);
     let view = |prepared: &_| CameraView::prepared(&scene, prepared, &light, &Background::None, &settings);
@@ -143,7 +139,7 @@ fn an_instance_has_one_level_of_detail_in_all_that_is_drawn() -> Result<(), Box<
     // Keys of the maps of a punctual light, which do not depend on the eye.
     let keys = |far_m, lod_error_px| {
         let shadows = view(&seen(far_m, lod_error_px, 64)).shadows;
-        shadows.map_or(Vec::new(), |shadows| shadows.keys[shadows.cascades..].to_vec())
+        shadows.map_or(Vec::new(), |shadows| shadows.keys()[shadows.cascades..].to_vec())
     };
     assert!(keys(1.0, 0.0).len() == 6 && keys(1.0, 0.0) == keys(3.0, 0.0), "they do");
     assert!(keys(1.0, 1.0) != keys(3.0, 1.0), "maps of other levels are taken for the same");

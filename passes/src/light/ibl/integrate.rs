@@ -8,8 +8,8 @@ use framegraph::{
 };
 use framegraph_shaders::reference::dfg::Visibility;
 use framegraph_shaders::{Module, library};
-use framegraph_wgpu::{Cx, Depth, DeviceError, Frame, Gpu, Imports, Record, RecordError, read_texture};
-use wgpu::{Extent3d, TexelCopyBufferLayout, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use framegraph_wgpu::{Cx, Depth, DeviceError, Frame, Gpu, Imports, Record, RecordError, read_texture, texture_2d};
+use wgpu::{TexelCopyBufferLayout, TextureFormat, TextureUsages};
 
 use super::cache::{Cache, Key};
 use super::entry;
@@ -92,16 +92,12 @@ fn key(settings: DfgSettings) -> Key {
 /// Creates an empty table for sampling, readback and `usage`.
 pub(super) fn create(gpu: &Gpu, texels: u32, usage: TextureUsages) -> Result<wgpu::Texture, DeviceError> {
     gpu.guard("the DFG table", || {
-        gpu.device.create_texture(&TextureDescriptor {
-            label: Some("dfg"),
-            size: Extent3d { width: texels, height: texels, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: TextureFormat::Rgba16Float,
-            usage: usage | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        })
+        gpu.device.create_texture(&texture_2d(
+            "dfg",
+            [texels, texels],
+            TextureFormat::Rgba16Float,
+            usage | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
+        ))
     })
 }
 

@@ -3,7 +3,7 @@
 use super::settings::EnvironmentFormat;
 use framegraph::{Extent, Format, TextureDesc};
 use framegraph_scene::environment::EquirectMap;
-use framegraph_wgpu::{DeviceError, Gpu, texture_format};
+use framegraph_wgpu::{DeviceError, Gpu, texture_2d, texture_format};
 use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{
     Extent3d, TexelCopyBufferLayout, Texture, TextureDescriptor, TextureDimension, TextureFormat,
@@ -79,16 +79,8 @@ pub(super) fn cube_view(cube: &Texture) -> TextureView {
 
 /// Uploads an equirectangular map in 32-bit floats. Shaders load its texels, since the format may not be filterable.
 pub(super) fn panorama_texture(gpu: &Gpu, map: &EquirectMap) -> Texture {
-    let desc = TextureDescriptor {
-        label: Some("panorama"),
-        size: Extent3d { width: map.width(), height: map.height(), depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format: TextureFormat::Rgba32Float,
-        usage: TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
+    let desc =
+        texture_2d("panorama", [map.width(), map.height()], TextureFormat::Rgba32Float, TextureUsages::TEXTURE_BINDING);
     let texels = bytemuck::cast_slice(map.texels());
     gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, texels)
 }

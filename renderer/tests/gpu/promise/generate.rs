@@ -130,7 +130,9 @@ fn bindings(caps: &Caps, cases: &mut Vec<Case>) {
         ("uniform buffers", caps.max_uniform_buffers),
     ];
     for (what, limit) in limits.into_iter().filter(|(_, limit)| *limit < 300) {
-        for (count, raster) in (limit.saturating_sub(1)..=limit + 1).flat_map(|n| [(n, false), (n, true)]) {
+        // A raster pass has two stages.
+        let one = (limit.saturating_sub(1)..=limit + 1).flat_map(|n| [(n, false), (n, true)]);
+        for (count, raster) in one.chain((limit * 2 - 1..=limit * 2 + 1).map(|n| (n, true))) {
             let name = format!("{count} {what}, raster {raster}");
             cases.push(Case::new("bindings", name, move |frame| {
                 let graph = frame.graph_mut();

@@ -43,7 +43,8 @@ pub struct Case {
     pub function: &'static str,
     /// Domains of its parameters; together they fill `x`.
     pub parameters: &'static [Domain],
-    /// WGSL expression that calls the function with arguments such as `x[0]` and `v3(1u)`.
+    /// WGSL expression that calls the function with arguments such as `x[0]` and `v3(1u)`. Empty passes the parameters in
+    /// order, as half floats if the function has a half-float build.
     pub call: &'static str,
     /// WGSL expressions of type f32 that extract values from the result `r`.
     pub results: &'static [&'static str],

@@ -6,18 +6,18 @@ use super::table::*;
 use Domain::{Count, Linear, Log, Values};
 
 pub(super) const CASES: &[Case] = &[
+    // log2 within 2⁻²¹ or three ulp of up to 20, times up to ten, and a sum of up to 200.
     case(
         ["froxel", "froxel_slice"],
         &[Log(1e-3, 1e6), Linear(1.0, 10.0), Linear(-40.0, 10.0), Count(32)],
         "froxel_slice(x[0], x[1], x[2], u32(x[3]) + 1u)",
         SCALAR,
         |x| vec![froxel::froxel_slice(x[0], x[1], x[2], x[3] as u32 + 1)],
-        // log2 within 2⁻²¹ or three ulp of up to 20, times up to ten, and a sum of up to 200.
         bound(1e-4, 0.0),
     ),
+    // Middles of pixels, about ends of tiles of 8 and of 120 pixels among them.
     case(
         ["froxel", "froxel_number"],
-        // Middles of pixels, about ends of tiles of 8 and of 120 pixels among them.
         &[
             Values(&[-0.5, 0.5, 7.5, 8.5, 119.5, 120.5, 1919.5, 4000.5, 16383.5]),
             Values(&[0.5, 7.5, 8.5, 359.5, 360.5, 1079.5]),

@@ -1,7 +1,7 @@
 //! Execution of a case: its shader, inputs and result check.
 
 use super::super::quantize::{FLOAT16_MAX, quantize_mantissa};
-use super::case::{Bound, Case, Deviation, Disagreement};
+use super::case::{Bound, Case, Deviation, Disagreement, Domain};
 use super::domain::splitmix;
 use framegraph_shaders::{Feature, Features, Module, Shader, ShaderError, resolve};
 
@@ -66,8 +66,37 @@ impl Case {
         resolve(&Module::new("case.wgsl", &self.wgsl()), &features, &[])
     }
 
+    /// Returns the call, with the parameters in order if the case does not state them.
+    fn expression(&self) -> String {
+        if !self.call.is_empty() {
+            return self.call.to_owned();
+        }
+        let mut at = 0;
+        let mut arguments = Vec::new();
+        let mut argument = |width: usize, is_count: bool| {
+            let vector = if width > 1 { width.to_string() } else { String::new() };
+            let value = if width > 1 { format!("v{width}({at}u)") } else { format!("x[{at}]") };
+            at += width;
+            arguments.push(match self.half {
+                _ if is_count => format!("u32({value})"),
+                Some(_) => format!("real{vector}({value})"),
+                None => value,
+            });
+        };
+        for parameter in self.parameters {
+            match parameter {
+                Domain::Directions(..) => {
+                    argument(3, false);
+                    argument(3, false);
+                }
+                other => argument(other.width(), matches!(other, Domain::Count(_))),
+            }
+        }
+        format!("{}({})", self.function, arguments.join(", "))
+    }
+
     fn wgsl(&self) -> String {
-        let Self { file, function, call, .. } = self;
+        let (Self { file, function, .. }, call) = (self, self.expression());
         let (inputs, outputs) = (self.input_width(), self.results.len());
         let mut text = format!(
             "import package::lib::{file}::{function};\n\

@@ -13,39 +13,28 @@ const DECAY: Domain =
 const RADIUS: Domain = Linear(-32.0, 32.0);
 
 pub(super) const CASES: &[Case] = &[
-    case(
-        ["fog", "mean_decay"],
-        &[Linear(-45.0, 45.0)],
-        "mean_decay(x[0])",
-        SCALAR,
-        |x| vec![fog::mean_decay(x[0])],
-        // exp(40) is good to 83 units in the last place, and what 1 - e^-x loses at 0.01 is no less.
-        bound(0.0, 2e-5),
-    ),
+    // exp(40) is good to 83 units in the last place, and what 1 - e^-x loses at 0.01 is no less.
+    scalar(["fog", "mean_decay"], &[Linear(-45.0, 45.0)], |x| vec![fog::mean_decay(x[0])], bound(0.0, 2e-5)),
+    // Two exponentials of up to 40, whose arguments are off by 2e-6 of themselves.
     case(
         ["fog", "fog_optical_depth"],
         &[Log(1e-6, 10.0), DECAY, Values(&[0.0, 0.5, 7.0]), Log(1e-3, 1e5), Values(&[0.0, 1.0])],
         "fog_optical_depth(x[0], x[1], x[2], x[3], x[4])",
         SCALAR,
         |x| vec![fog::fog_optical_depth(x[0], x[1], x[2], x[3], x[4])],
-        // Two exponentials of up to 40, whose arguments are off by 2e-6 of themselves.
         bound(1e-9, 3e-4),
     ),
-    case(
+    scalar(
         ["fog", "fog_opacity"],
         &[Log(1e-6, 1e20), Values(&[0.0, 0.5, 1.0])],
-        "fog_opacity(x[0], x[1])",
-        SCALAR,
         |x| vec![fog::fog_opacity(x[0], x[1])],
         ARITHMETIC,
     ),
-    case(
+    // The logarithm is off by 2⁻²¹, times the exponent.
+    scalar(
         ["fog", "fog_glow"],
         &[Linear(-1.0, 1.001), Log(0.1, 200.0)],
-        "fog_glow(x[0], x[1])",
-        SCALAR,
         |x| vec![fog::fog_glow(x[0], x[1])],
-        // The logarithm is off by 2⁻²¹, times the exponent.
         bound(1e-4, 1e-3),
     ),
     case(
@@ -56,14 +45,7 @@ pub(super) const CASES: &[Case] = &[
         |x| bloom::tent_weights(x[0]).to_vec(),
         ARITHMETIC,
     ),
-    case(
-        ["bloom", "brightest"],
-        &[Vector(3, 0.0, 65504.0)],
-        "brightest(v3(0u))",
-        SCALAR,
-        |x| vec![bloom::brightest(v3(x, 0))],
-        EXACT,
-    ),
+    scalar(["bloom", "brightest"], &[Vector(3, 0.0, 65504.0)], |x| vec![bloom::brightest(v3(x, 0))], EXACT),
     case(
         ["bloom", "firefly_weight"],
         &[Log(1e-4, 65504.0), Log(1e-4, 65504.0), Values(&[0.0, 1.0, 65504.0])],
@@ -87,11 +69,9 @@ pub(super) const CASES: &[Case] = &[
         |x| out3(bloom::glowing(v3(x, 0), x[3], x[4], x[5])),
         ARITHMETIC,
     ),
-    case(
+    scalar(
         ["flare", "flare_ring"],
         &[Linear(0.0, 1.5), Linear(0.0, 0.5), Values(&[0.0, 0.1, 1.0])],
-        "flare_ring(x[0], x[1], x[2])",
-        SCALAR,
         |x| vec![flare::flare_ring(x[0], x[1], x[2])],
         bound(1e-5, 0.0),
     ),
@@ -111,19 +91,17 @@ pub(super) const CASES: &[Case] = &[
         |x| out2(flare::flare_direction(v2(x, 0), x[2])),
         bound(5e-5, 0.0),
     ),
-    case(
+    // Middles of cells, where a neighbor counts nothing and the sine is of a small number.
+    // The sine is good to 2⁻¹¹, times 437 and halved.
+    scalar(
         ["flare", "starburst_noise"],
-        // Middles of cells, where a neighbor counts nothing and the sine is of a small number.
         &[Values(&[0.5 / 256.0, 1.5 / 256.0, 2.5 / 256.0, 5.5 / 256.0])],
-        "starburst_noise(x[0])",
-        SCALAR,
         |x| vec![flare::starburst_noise(x[0])],
-        // The sine is good to 2⁻¹¹, times 437 and halved.
         bound(0.11, 0.0),
     ),
+    // Star rays have no effect near the center.
     case(
         ["flare", "starburst"],
-        // Star rays have no effect near the center.
         &[Linear(0.499, 0.5), Linear(0.499, 0.5), Linear(-2.0, 2.0)],
         "starburst(v2(0u), x[2])",
         SCALAR,
@@ -138,9 +116,9 @@ pub(super) const CASES: &[Case] = &[
         |x| vec![dof::inverse_distance(x[0], glam::DVec4::new(x[1], x[2], x[3], x[4]))],
         ARITHMETIC,
     ),
+    // In focus, and far from where it jumps.
     case(
         ["dof", "coc_radius"],
-        // In focus, and far from where it jumps.
         &[
             Log(0.01, 0.2),
             Values(&[1.0, 2.0]),
@@ -154,28 +132,22 @@ pub(super) const CASES: &[Case] = &[
         bound(1e-5, 2e-6),
     ),
     case(["dof", "coc_opacity"], &[RADIUS], "coc_opacity(x[0])", SCALAR, |x| vec![dof::coc_opacity(x[0])], ARITHMETIC),
-    case(
+    scalar(
         ["dof", "coc_reaches"],
         &[RADIUS, Linear(0.0, 40.0), Values(&[1.0, 2.0, 8.0])],
-        "coc_reaches(x[0], x[1], x[2])",
-        SCALAR,
         |x| vec![dof::coc_reaches(x[0], x[1], x[2])],
         bound(1e-5, 0.0),
     ),
-    case(
+    scalar(
         ["dof", "coc_density"],
         &[RADIUS, Values(&[1.0, 2.0, 8.0])],
-        "coc_density(x[0], x[1])",
-        SCALAR,
         |x| vec![dof::coc_density(x[0], x[1])],
         ARITHMETIC,
     ),
-    case(
+    // Away from where it jumps: at √2 times a power of two times the rings less a half.
+    scalar(
         ["dof", "ring_level"],
-        // Away from where it jumps: at √2 times a power of two times the rings less a half.
         &[Values(&[3.0, 5.0]), Values(&[0.0, 0.5, 2.6, 5.0, 11.0, 22.0, 32.0])],
-        "ring_level(x[0], x[1])",
-        SCALAR,
         |x| vec![dof::ring_level(x[0], x[1])],
         EXACT,
     ),

@@ -13,22 +13,8 @@ const HDR: Domain = Vector(3, 0.0, 4.0);
 const POWER: Bound = bound(5e-6, 2e-5);
 
 pub(super) const CASES: &[Case] = &[
-    case(
-        ["srgb", "linear_from_srgb_channel"],
-        &[CHANNEL],
-        "linear_from_srgb_channel(x[0])",
-        SCALAR,
-        |x| vec![srgb::linear_from_srgb_channel(x[0])],
-        POWER,
-    ),
-    case(
-        ["srgb", "srgb_from_linear_channel"],
-        &[CHANNEL],
-        "srgb_from_linear_channel(x[0])",
-        SCALAR,
-        |x| vec![srgb::srgb_from_linear_channel(x[0])],
-        POWER,
-    ),
+    scalar(["srgb", "linear_from_srgb_channel"], &[CHANNEL], |x| vec![srgb::linear_from_srgb_channel(x[0])], POWER),
+    scalar(["srgb", "srgb_from_linear_channel"], &[CHANNEL], |x| vec![srgb::srgb_from_linear_channel(x[0])], POWER),
     case(
         ["srgb", "linear_from_srgb"],
         &[CHANNEL, CHANNEL, CHANNEL],
@@ -45,21 +31,12 @@ pub(super) const CASES: &[Case] = &[
         |x| out3(srgb::srgb_from_linear(v3(x, 0))),
         POWER,
     ),
-    case(
-        ["luminance", "luminance"],
-        &[HDR],
-        "luminance(v3(0u))",
-        SCALAR,
-        |x| vec![luminance::luminance(v3(x, 0))],
-        ARITHMETIC,
-    ),
+    scalar(["luminance", "luminance"], &[HDR], |x| vec![luminance::luminance(v3(x, 0))], ARITHMETIC),
     // Positions up to 2000 leave 2⁻¹³ of the inner sum, times 53; and where it rounds across
     // a whole number the result moves by 1 - fract(52.98) = 0.017.
-    case(
+    scalar(
         ["dither", "interleaved_gradient_noise"],
         &[Vector(2, 0.5, 2000.5), Count(200)],
-        "interleaved_gradient_noise(v2(0u), u32(x[2]))",
-        SCALAR,
         |x| vec![dither::interleaved_gradient_noise(v2(x, 0), x[2] as u32)],
         Bound { absolute: 0.025, relative: 0.0, period: 1.0 },
     ),
@@ -103,11 +80,9 @@ pub(super) const CASES: &[Case] = &[
         |x| rgbm::linear_from_rgbm(v3(x, 0).extend(x[3])).to_array().to_vec(),
         ARITHMETIC,
     ),
-    case(
+    scalar(
         ["fxaa", "fxaa_is_edge"],
         &[Linear(0.0, 1.0), Linear(0.0, 1.0), Linear(0.05, 0.2), Linear(0.03, 0.06)],
-        "fxaa_is_edge(x[0], x[1], x[2], x[3])",
-        BOOL,
         |x| vec![f64::from(u8::from(fxaa::fxaa_is_edge(x[0], x[1], x[2], x[3])))],
         EXACT,
     ),
@@ -119,11 +94,9 @@ pub(super) const CASES: &[Case] = &[
         |x| out2(fxaa::fxaa_direction(x[0], x[1], x[2], x[3])),
         bound(2e-5, 0.0),
     ),
-    case(
+    scalar(
         ["fxaa", "fxaa_span_texels"],
         &[Vector(2, -1.0, 1.0), Linear(0.0, 1.0), Linear(2.0, 16.0)],
-        "fxaa_span_texels(v2(0u), x[2], x[3])",
-        SCALAR,
         |x| vec![fxaa::fxaa_span_texels(v2(x, 0), x[2], x[3])],
         bound(1e-6, 1e-5),
     ),
@@ -135,14 +108,13 @@ pub(super) const CASES: &[Case] = &[
         |x| fullscreen::fullscreen_position(x[0] as u32, x[1]).to_array().to_vec(),
         EXACT,
     ),
-    case(
+    vec2(
         ["fullscreen", "uv_from_clip"],
         &[Vector(2, -1.0, 3.0)],
-        "uv_from_clip(v2(0u))",
-        VEC2,
         |x| out2(fullscreen::uv_from_clip(v2(x, 0))),
         ARITHMETIC,
     ),
+    // acos is good to 2⁻¹¹ near its ends, and D multiplies it by up to 3.
     case(
         ["sky", "perez"],
         &[
@@ -156,7 +128,6 @@ pub(super) const CASES: &[Case] = &[
         ],
         "perez(rows5(0u), x[15], x[16])",
         VEC3,
-        // acos is good to 2⁻¹¹ near its ends, and D multiplies it by up to 3.
         |x| out3(sky::perez(&rows5(x), x[15], x[16])),
         bound(1e-2, 1e-3),
     ),
@@ -187,29 +158,23 @@ pub(super) const CASES: &[Case] = &[
         |x| out3(sky::sky_radiance(&rows5(x), v3(x, 15), v3(x, 18), v3(x, 21), v3(x, 24))),
         bound(0.2, 2e-2),
     ),
-    case(
+    // A sine of 0.004 has an absolute rounding of 1e-7; the step is a tenth of it wide.
+    scalar(
         ["sky", "sun_disc"],
         &[Direction, Direction, Log(0.004, 0.5)],
-        "sun_disc(v3(0u), v3(3u), x[6])",
-        SCALAR,
-        // A sine of 0.004 has an absolute rounding of 1e-7; the step is a tenth of it wide.
         |x| vec![sky::sun_disc(v3(x, 0), v3(x, 3), x[6])],
         bound(1e-3, 0.0),
     ),
-    case(
+    // Near the end of the halo its rest is a difference of numbers up to one.
+    scalar(
         ["sky", "sun_halo"],
         &[Direction, Direction, Log(1e-5, 0.1), Log(0.5, 300.0), Log(0.1, 100.0)],
-        "sun_halo(v3(0u), v3(3u), x[6], x[7], x[8])",
-        SCALAR,
         |x| vec![sky::sun_halo(v3(x, 0), v3(x, 3), x[6], x[7], x[8])],
-        // Near the end of the halo its rest is a difference of numbers up to one.
         bound(1e-3, 0.0),
     ),
-    case(
+    vec3(
         ["sky", "sun_disc_radiance"],
         &[Vector(3, 0.0, 5.0), Log(0.001, 0.5)],
-        "sun_disc_radiance(v3(0u), x[3])",
-        VEC3,
         |x| out3(sky::sun_disc_radiance(v3(x, 0), x[3])),
         bound(0.0, 5e-6),
     ),

@@ -47,13 +47,13 @@ pub(super) const CASES: &[Case] = &[
         |x| vec![unproject::view_z(x[0], DVec4::new(0.0, x[1], -1.0, 0.0))],
         bound(0.0, 2e-6),
     ),
+    // Sums of numbers up to 10⁵ m times what is divided by: relative to z, of which the mirror has more.
     case(
         ["unproject", "view_position"],
         CENTRAL,
         CENTRAL_CALL,
         VEC3,
         |x| out3(unproject::view_position(DVec2::new(x[0], x[1]), x[2], central(x, 3))),
-        // Sums of numbers up to 10⁵ m times what is divided by: relative to z, of which the mirror has more.
         bound(0.05, 4e-6),
     ),
     case(
@@ -80,9 +80,9 @@ pub(super) const CASES: &[Case] = &[
         |x| depth_pyramid::finest_texel([x[0] as i32, x[1] as i32], x[2] as i32).map(f64::from).to_vec(),
         EXACT,
     ),
+    // Away from powers of two, where a logarithm may fall to either side.
     case(
         ["depth_pyramid", "pyramid_level"],
-        // Away from powers of two, where a logarithm may fall to either side.
         &[Values(&[-1.0, 0.0, 1.5, 7.0, 15.9, 16.1, 31.0, 33.0, 100.0, 500.0, 1e6]), Count(8)],
         "pyramid_level(x[0], i32(x[1]))",
         SCALAR,
@@ -128,65 +128,33 @@ pub(super) const CASES: &[Case] = &[
     )
     // u·n is off by three roundings of up to 2⁻¹¹, which the least denominator, 0.01, makes 0.05 of 5.
     .half(bound(0.06, 2e-2)),
-    case(
+    scalar(
         ["sao", "sao_obscurance"],
         &[Linear(-0.01, 2.0), Linear(0.0, 2.0)],
-        "sao_obscurance(x[0], x[1])",
-        SCALAR,
         |x| vec![sao::sao_obscurance(x[0], x[1])],
         bound(1e-6, 5e-6),
     ),
-    case(
-        ["gtao", "acos_held"],
-        &[Linear(-1.001, 1.001)],
-        "acos_held(x[0])",
-        SCALAR,
-        |x| vec![gtao::acos_held(x[0])],
-        // Error of the polynomial.
-        bound(8e-5, 0.0),
-    ),
-    case(
-        ["gtao", "slice_arc"],
-        &[ANGLE, ANGLE],
-        "slice_arc(x[0], x[1])",
-        SCALAR,
-        |x| vec![gtao::slice_arc(x[0], x[1])],
-        TRIGONOMETRY,
-    ),
-    case(
-        ["gtao", "slice_whole"],
-        &[ANGLE],
-        "slice_whole(x[0])",
-        SCALAR,
-        |x| vec![gtao::slice_whole(x[0])],
-        TRIGONOMETRY,
-    ),
-    case(
-        ["gtao", "slice_share"],
-        &[Linear(-4.0, 4.0), ANGLE],
-        "slice_share(x[0], x[1])",
-        SCALAR,
-        |x| vec![gtao::slice_share(x[0], x[1])],
-        TRIGONOMETRY,
-    ),
-    case(
+    // Error of the polynomial.
+    scalar(["gtao", "acos_held"], &[Linear(-1.001, 1.001)], |x| vec![gtao::acos_held(x[0])], bound(8e-5, 0.0)),
+    scalar(["gtao", "slice_arc"], &[ANGLE, ANGLE], |x| vec![gtao::slice_arc(x[0], x[1])], TRIGONOMETRY),
+    scalar(["gtao", "slice_whole"], &[ANGLE], |x| vec![gtao::slice_whole(x[0])], TRIGONOMETRY),
+    scalar(["gtao", "slice_share"], &[Linear(-4.0, 4.0), ANGLE], |x| vec![gtao::slice_share(x[0], x[1])], TRIGONOMETRY),
+    // Some twenty sines over twelve.
+    vec2(
         ["gtao", "slice_bent"],
         &[Linear(-3.0, 0.0), Linear(0.0, 3.0), ANGLE],
-        "slice_bent(x[0], x[1], x[2])",
-        VEC2,
         |x| out2(gtao::slice_bent(x[0], x[1], x[2])),
-        // Some twenty sines over twelve.
         bound(2e-3, 0.0),
     ),
+    // Away from the edges of sectors.
+    // Halves, since a float holds no more than 24 bits.
     case(
         ["gtao", "sector_bits"],
-        // Away from the edges of sectors.
         &[
             Values(&[-0.1, 0.0, 0.01, 0.3, 0.51, 0.97]),
             Values(&[0.0, 0.01, 0.3, 0.52, 0.98, 1.0, 1.1]),
             Values(&[0.0, 0.3, 0.7]),
         ],
-        // Halves, since a float holds no more than 24 bits.
         "vec2<u32>(sector_bits(x[0], x[1], x[2]) & 0xffffu, sector_bits(x[0], x[1], x[2]) >> 16u)",
         VEC2,
         |x| {
@@ -211,7 +179,8 @@ pub(super) const CASES: &[Case] = &[
         |x| vec![gtao::slice_offset([x[0] as i32, x[1] as i32])],
         EXACT,
     ),
-    case(
+    // Depths of 5 m are off by 5e-7 m, of slices a centimeter thick.
+    scalar(
         ["cone_trace", "cone_slice"],
         &[
             Linear(4.0, 6.0),
@@ -221,17 +190,12 @@ pub(super) const CASES: &[Case] = &[
             Linear(0.0, 0.02),
             Linear(0.1, 2.0),
         ],
-        "cone_slice(x[0], x[1], x[2], x[3], x[4], x[5])",
-        SCALAR,
         |x| vec![cone_trace::cone_slice(x[0], x[1], x[2], x[3], x[4], x[5])],
-        // Depths of 5 m are off by 5e-7 m, of slices a centimeter thick.
         bound(2e-4, 0.0),
     ),
-    case(
+    scalar(
         ["bilateral", "bilateral_weight"],
         &[Linear(-0.1, 0.1), Linear(0.01, 0.1)],
-        "bilateral_weight(x[0], x[1])",
-        SCALAR,
         |x| vec![bilateral::bilateral_weight(x[0], x[1])],
         bound(1e-6, 0.0),
     ),

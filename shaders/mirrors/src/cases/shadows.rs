@@ -13,32 +13,26 @@ pub(super) const CASES: &[Case] = &[
         ["contact_shadow", "contact_hides"],
         &[Count(1000), Values(&[0.5]), Values(&[0.0105])],
         "contact_hides(x[0] * 0.001, x[1], x[2])",
-        BOOL,
+        SCALAR,
         |x| vec![f64::from(contact_shadow::contact_hides(x[0] * 0.001, x[1], x[2]))],
         EXACT,
     ),
-    case(
+    scalar(
         ["contact_shadow", "contact_fade"],
         &[Vector(2, -0.1, 1.1)],
-        "contact_fade(v2(0u))",
-        SCALAR,
         |x| vec![contact_shadow::contact_fade(v2(x, 0))],
         bound(1e-5, 0.0),
     ),
-    case(
+    // One minus a visibility near one keeps 2⁻²⁴ of at least 10⁻⁴.
+    scalar(
         ["micro_shadow", "micro_shadowing"],
         &[Linear(-1.0, 1.0), Linear(0.0, 1.0)],
-        "micro_shadowing(x[0], x[1])",
-        SCALAR,
         |x| vec![micro_shadow::micro_shadowing(x[0], x[1])],
-        // One minus a visibility near one keeps 2⁻²⁴ of at least 10⁻⁴.
         bound(2e-3, 0.0),
     ),
-    case(
+    vec3(
         ["shadow", "normal_offset"],
         &[Direction, Direction, Direction, Vector(2, 0.001, 0.1)],
-        "normal_offset(v3(0u), v3(3u), v3(6u), v2(9u))",
-        VEC3,
         |x| out3(shadow::normal_offset(v3(x, 0), v3(x, 3), v3(x, 6), v2(x, 9))),
         ARITHMETIC,
     ),
@@ -50,6 +44,7 @@ pub(super) const CASES: &[Case] = &[
         |x| out3(shadow::shadow_uvz_from_clip(DVec4::new(x[0], x[1], x[2], x[3]))),
         ARITHMETIC,
     ),
+    // Within a texel a position of 2048 has 2⁻¹³ left.
     case(
         ["shadow", "tent_3x3"],
         &[Vector(2, 0.103, 0.903), Values(&[512.0, 1024.0, 2048.0])],
@@ -68,7 +63,6 @@ pub(super) const CASES: &[Case] = &[
             let t = shadow::tent_3x3(v2(x, 0), DVec2::splat(x[2]));
             [t.u, t.v, t.column_weight, t.row_weight].map(|pair| pair.to_array()).concat()
         },
-        // Within a texel a position of 2048 has 2⁻¹³ left.
         bound(5e-4, 0.0),
     ),
     // A determinant that is nearly nothing is a difference of products: the directions are a sine of 0.1 apart or more, or
@@ -88,37 +82,26 @@ pub(super) const CASES: &[Case] = &[
         |x| out2(shadow::receiver_plane_slope(v3(x, 0), v3(x, 3))),
         bound(5e-6, 5e-6),
     ),
+    // Precision of sin and cos in WGSL.
     case(
         ["shadow", "vogel_tap"],
         &[Count(16), Values(&[12.0, 16.0]), Linear(0.0, 6.3)],
         "vogel_tap(u32(x[0]), u32(x[1]), x[2])",
         VEC2,
         |x| out2(shadow::vogel_tap(x[0] as u32, x[1] as u32, x[2])),
-        // Precision of sin and cos in WGSL.
         bound(1.5e-3, 0.0),
     ),
-    case(
-        ["shadow", "hardened_kernel"],
-        &[Linear(0.0, 1.0)],
-        "hardened_kernel(x[0])",
-        SCALAR,
-        |x| vec![shadow::hardened_kernel(x[0])],
-        ARITHMETIC,
-    ),
-    case(
+    scalar(["shadow", "hardened_kernel"], &[Linear(0.0, 1.0)], |x| vec![shadow::hardened_kernel(x[0])], ARITHMETIC),
+    // One minus a depth near one keeps 2⁻²⁴ of an ulp, of at least 10⁻⁴.
+    scalar(
         ["shadow", "penumbra_ratio_parallel"],
         &[Linear(0.0, 1.0), Linear(0.0, 1.0)],
-        "penumbra_ratio_parallel(x[0], x[1])",
-        SCALAR,
-        // One minus a depth near one keeps 2⁻²⁴ of an ulp, of at least 10⁻⁴.
         |x| vec![shadow::penumbra_ratio_parallel(x[0], x[1])],
         bound(1e-6, 2e-3),
     ),
-    case(
+    scalar(
         ["shadow", "penumbra_ratio_perspective"],
         &[Linear(0.01, 1.0), Linear(0.01, 1.0), Linear(0.0, 0.1)],
-        "penumbra_ratio_perspective(x[0], x[1], x[2])",
-        SCALAR,
         |x| vec![shadow::penumbra_ratio_perspective(x[0], x[1], x[2])],
         bound(2e-5, 2e-6),
     ),
@@ -126,32 +109,28 @@ pub(super) const CASES: &[Case] = &[
         ["shadow", "cascade_at"],
         &[Linear(0.0, 120.0)],
         "cascade_at(x[0], vec4<f32>(10.0, 20.0, 40.0, 100.0))",
-        BOOL,
+        SCALAR,
         |x| vec![shadow::cascade_at(x[0], [10.0, 20.0, 40.0, 100.0]).into()],
         EXACT,
     ),
-    case(
+    scalar(
         ["shadow", "faded_visibility"],
         &[Linear(0.0, 1.0), Linear(0.0, 120.0), Values(&[0.0, 1e-4])],
-        "faded_visibility(x[0], x[1], x[2])",
-        SCALAR,
         |x| vec![shadow::faded_visibility(x[0], x[1], x[2])],
         bound(5e-6, 0.0),
     ),
-    case(
+    scalar(
         ["shadow", "weakened_visibility"],
         &[Linear(0.0, 1.0), Linear(0.0, 1.0)],
-        "weakened_visibility(x[0], x[1])",
-        SCALAR,
         |x| vec![shadow::weakened_visibility(x[0], x[1])],
         ARITHMETIC,
     ),
+    // Distances from a punctual light in m, including points inside its source.
     case(
-        // Distances from a punctual light in m, including points inside its source.
         ["shadow", "cube_face_of"],
         &[Linear(-0.2, 0.2), Linear(-0.2, 0.2), Linear(-0.2, 0.2)],
         "cube_face_of(v3(0u))",
-        BOOL,
+        SCALAR,
         |x| vec![shadow::cube_face_of(v3(x, 0)).into()],
         EXACT,
     ),
@@ -180,12 +159,12 @@ pub(super) const CASES: &[Case] = &[
         |x| vec![shadow_moments::least_variance(x[0], 5.54, x[1], v2(x, 2))],
         ARITHMETIC,
     ),
+    // The square of up to ten is taken from the second moment, which is at least one more.
     case(
         ["shadow_moments", "moment_visibility"],
         &[Linear(0.0, 10.0), Linear(101.0, 200.0), Linear(0.0, 20.0), Linear(0.0, 1.0), Linear(0.0, 0.5)],
         "moment_visibility(v2(0u), x[2], x[3], x[4])",
         SCALAR,
-        // The square of up to ten is taken from the second moment, which is at least one more.
         |x| vec![shadow_moments::moment_visibility(v2(x, 0), x[2], x[3], x[4])],
         bound(5e-5, 0.0),
     ),

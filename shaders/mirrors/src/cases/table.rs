@@ -19,7 +19,6 @@ pub(super) const EXACT: Bound = bound(0.0, 0.0);
 pub(super) const SCALAR: &[&str] = &["f32(r)"];
 pub(super) const VEC2: &[&str] = &["f32(r.x)", "f32(r.y)"];
 pub(super) const VEC3: &[&str] = &["f32(r.x)", "f32(r.y)", "f32(r.z)"];
-pub(super) const BOOL: &[&str] = &["f32(r)"];
 
 pub(super) const fn case(
     [file, function]: [&'static str; 2],
@@ -30,6 +29,36 @@ pub(super) const fn case(
     bound: Bound,
 ) -> Case {
     Case { file, function, parameters, call, results, mirror, bound, in_half: false, half: None }
+}
+
+/// A function with a result of type f32, called with its parameters in order.
+pub(super) const fn scalar(
+    names: [&'static str; 2],
+    parameters: &'static [Domain],
+    mirror: fn(&[f64]) -> Vec<f64>,
+    bound: Bound,
+) -> Case {
+    case(names, parameters, "", SCALAR, mirror, bound)
+}
+
+/// A function with a result of type vec2, called with its parameters in order.
+pub(super) const fn vec2(
+    names: [&'static str; 2],
+    parameters: &'static [Domain],
+    mirror: fn(&[f64]) -> Vec<f64>,
+    bound: Bound,
+) -> Case {
+    case(names, parameters, "", VEC2, mirror, bound)
+}
+
+/// A function with a result of type vec3, called with its parameters in order.
+pub(super) const fn vec3(
+    names: [&'static str; 2],
+    parameters: &'static [Domain],
+    mirror: fn(&[f64]) -> Vec<f64>,
+    bound: Bound,
+) -> Case {
+    case(names, parameters, "", VEC3, mirror, bound)
 }
 
 impl Case {

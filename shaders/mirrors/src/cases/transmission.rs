@@ -6,56 +6,44 @@ use super::table::*;
 use Domain::{Direction, Linear, Log, Vector};
 
 pub(super) const CASES: &[Case] = &[
-    case(
+    // At an index of 1 a grazing ray goes on along the surface: the root of a cancelled difference.
+    vec3(
         ["refraction", "refracted_path"],
         &[Direction, Direction, Linear(1.0, 2.5), Linear(0.0, 3.0)],
-        "refracted_path(v3(0u), v3(3u), x[6], x[7])",
-        VEC3,
         |x| out3(refraction::refracted_path(v3(x, 0), v3(x, 3), x[6], x[7])),
-        // At an index of 1 a grazing ray goes on along the surface: the root of a cancelled difference.
         bound(3e-3, 0.0),
     ),
-    case(
+    vec3(
         ["refraction", "dispersed_ior"],
         &[Linear(1.0, 2.5), Linear(0.0, 10.0)],
-        "dispersed_ior(x[0], x[1])",
-        VEC3,
         |x| out3(refraction::dispersed_ior(x[0], x[1])),
         ARITHMETIC,
     ),
-    case(
+    // exp is good to 3 + 2|x| ulp.
+    vec3(
         ["refraction", "transmittance"],
         &[Vector(3, 0.0, 20.0), Linear(0.0, 2.0)],
-        "transmittance(v3(0u), x[3])",
-        VEC3,
         |x| out3(refraction::transmittance(v3(x, 0), x[3])),
-        // exp is good to 3 + 2|x| ulp.
         bound(1e-7, 1e-5),
     ),
-    case(
+    scalar(
         ["refraction", "transmission_spread"],
         &[Linear(0.0, 1.0), Linear(0.9, 2.5)],
-        "transmission_spread(x[0], x[1])",
-        SCALAR,
         |x| vec![refraction::transmission_spread(x[0], x[1])],
         ARITHMETIC,
     ),
-    case(
+    // 3 / ior - 2 cancels: 1e-6 of rounding.
+    scalar(
         ["refraction", "seen_transmission_spread"],
         &[Linear(0.0, 1.0), Linear(0.9, 2.5)],
-        "seen_transmission_spread(x[0], x[1])",
-        SCALAR,
         |x| vec![refraction::seen_transmission_spread(x[0], x[1])],
-        // 3 / ior - 2 cancels: 1e-6 of rounding.
         bound(2e-6, 2e-6),
     ),
-    case(
+    // log2 is good to 2⁻²¹ near 1.
+    scalar(
         ["refraction", "pyramid_lod"],
         &[Log(1e-4, 1e4)],
-        "pyramid_lod(x[0])",
-        SCALAR,
         |x| vec![refraction::pyramid_lod(x[0])],
-        // log2 is good to 2⁻²¹ near 1.
         bound(2e-6, 2e-6),
     ),
 ];

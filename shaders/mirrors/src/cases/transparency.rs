@@ -7,11 +7,9 @@ use Domain::{Linear, Log, Values, Vector};
 use glam::DVec4;
 
 pub(super) const CASES: &[Case] = &[
-    case(
+    scalar(
         ["weighted_blending", "blend_weight"],
         &[Log(0.01, 1e5)],
-        "blend_weight(x[0])",
-        SCALAR,
         |x| vec![weighted_blending::blend_weight(x[0])],
         bound(0.0, 1e-5),
     ),
@@ -24,19 +22,15 @@ pub(super) const CASES: &[Case] = &[
         bound(1e-7, 1e-5),
     ),
     // One minus an alpha near one keeps 2⁻²⁴ of 10⁻³.
-    case(
+    scalar(
         ["moment_transparency", "absorbance"],
         &[Linear(0.0, 0.999)],
-        "absorbance(x[0])",
-        SCALAR,
         |x| vec![moment_transparency::absorbance(x[0])],
         bound(1e-4, 1e-5),
     ),
-    case(
+    scalar(
         ["moment_transparency", "transmittance_of"],
         &[Linear(-1.0, 9.9)],
-        "transmittance_of(x[0])",
-        SCALAR,
         |x| vec![moment_transparency::transmittance_of(x[0])],
         bound(1e-7, 1e-5),
     ),
@@ -56,11 +50,9 @@ pub(super) const CASES: &[Case] = &[
         |x| moment_transparency::power_moments(x[0]).to_array().to_vec(),
         ARITHMETIC,
     ),
-    case(
+    scalar(
         ["moment_transparency", "divisor"],
         &[Values(&[-1.0, -1e-9, 0.0, 1e-9, 0.25]), Values(&[1e-6])],
-        "divisor(x[0], x[1])",
-        SCALAR,
         |x| vec![moment_transparency::divisor(x[0], x[1])],
         ARITHMETIC,
     ),
@@ -74,11 +66,9 @@ pub(super) const CASES: &[Case] = &[
             Vector(3, 0.1, 1.0),
             Values(&[-1.0, -0.45, 0.35, 1.0]),
         ],
-        "moment_transmittance(x[3] + x[4] + x[5], \
-         x[3] * vec4<f32>(x[0], x[0] * x[0], x[0] * x[0] * x[0], x[0] * x[0] * x[0] * x[0]) \
-         + x[4] * vec4<f32>(x[1], x[1] * x[1], x[1] * x[1] * x[1], x[1] * x[1] * x[1] * x[1]) \
-         + x[5] * vec4<f32>(x[2], x[2] * x[2], x[2] * x[2] * x[2], x[2] * x[2] * x[2] * x[2]), \
-         x[6], 0.001, 0.25)",
+        "moment_transmittance(x[3] + x[4] + x[5], x[3] * vec4<f32>(x[0], x[0] * x[0], x[0] * x[0] * x[0], x[0] * x[0] \
+         * x[0] * x[0]) + x[4] * vec4<f32>(x[1], x[1] * x[1], x[1] * x[1] * x[1], x[1] * x[1] * x[1] * x[1]) + x[5] * \
+         vec4<f32>(x[2], x[2] * x[2], x[2] * x[2] * x[2], x[2] * x[2] * x[2] * x[2]), x[6], 0.001, 0.25)",
         SCALAR,
         |x| {
             let own = |i: usize| moment_transparency::power_moments(x[i]) * x[3 + i];

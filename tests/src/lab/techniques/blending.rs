@@ -1,9 +1,9 @@
 //! Techniques for blended surfaces.
 
+use super::Change::Options;
 use super::{Technique, base, nowhere, pictures};
 use crate::lab::studio::Truth;
 use framegraph_passes::Transparency;
-use framegraph_passes::effects::transparency::{MomentPrecision, MomentTransparency};
 use framegraph_wgpu::Gpu;
 
 /// Upper bound on the layers along any ray through the scene `panes`.
@@ -20,29 +20,14 @@ pub(super) fn techniques(gpu: &Gpu) -> Vec<Technique> {
         ("depth peeling with 16 layers, more than any pixel has.", Truth::Frame(truth)),
         setup,
         &[
-            (
-                "sorted",
-                |s| s.settings.transparency = Transparency::Sorted,
-                |f| f.settings.transparency == Transparency::Sorted,
-            ),
-            ("two passes", |s| s.settings.transparency = Transparency::TwoPasses, nowhere),
-            ("weighted", |s| s.settings.transparency = Transparency::Weighted, nowhere),
-            (
-                "moments, 16 bits",
-                |s| s.settings.transparency = Transparency::Moments(MomentTransparency::DEFAULT),
-                nowhere,
-            ),
-            (
-                "moments, 32 bits",
-                |s| {
-                    let full = MomentTransparency { precision: MomentPrecision::Full, ..MomentTransparency::DEFAULT };
-                    s.settings.transparency = Transparency::Moments(full);
-                },
-                nowhere,
-            ),
-            ("peeled, 2 layers", |s| s.settings.transparency = Transparency::Peeled { layers: 2 }, nowhere),
-            ("peeled, 4 layers", |s| s.settings.transparency = Transparency::Peeled { layers: 4 }, nowhere),
-            ("peeled, 8 layers", |s| s.settings.transparency = Transparency::Peeled { layers: 8 }, nowhere),
+            ("sorted", Options("transparency=sorted"), |f| f.settings.transparency == Transparency::Sorted),
+            ("two passes", Options("transparency=two-passes"), nowhere),
+            ("weighted", Options("transparency=weighted"), nowhere),
+            ("moments, 16 bits", Options("transparency=moments"), nowhere),
+            ("moments, 32 bits", Options("transparency=moments:precision=full"), nowhere),
+            ("peeled, 2 layers", Options("transparency=peeled:layers=2"), nowhere),
+            ("peeled, 4 layers", Options("transparency=peeled:layers=4"), nowhere),
+            ("peeled, 8 layers", Options("transparency=peeled:layers=8"), nowhere),
         ],
     );
     if !gpu.device.features().contains(wgpu::Features::FLOAT32_BLENDABLE) {

@@ -1,5 +1,6 @@
 //! Storage of the prefiltered environment, and sources of its irradiance.
 
+use super::Change::{Function, Options};
 use super::{Technique, base, formula, number, pictures};
 use crate::lab::studio::Truth;
 use crate::lab::technique::Measured;
@@ -26,17 +27,13 @@ fn storage() -> Technique {
         ("half floats.", Truth::Frame(half)),
         half,
         &[
-            ("half floats, 8 bytes", |_| (), |f| f.settings.shading.environment_format == EnvironmentFormat::Half),
-            (
-                "R11G11B10F, 4 bytes",
-                |s| s.light.image.format = EnvironmentFormat::Rg11b10,
-                |f| f.settings.shading.environment_format == EnvironmentFormat::Rg11b10,
-            ),
-            (
-                "RGBM, 4 bytes",
-                |s| s.light.image.format = EnvironmentFormat::Rgbm,
-                |f| f.settings.shading.environment_format == EnvironmentFormat::Rgbm,
-            ),
+            ("half floats, 8 bytes", Options(""), |f| f.settings.shading.environment_format == EnvironmentFormat::Half),
+            ("R11G11B10F, 4 bytes", Function(|s| s.light.image.format = EnvironmentFormat::Rg11b10), |f| {
+                f.settings.shading.environment_format == EnvironmentFormat::Rg11b10
+            }),
+            ("RGBM, 4 bytes", Function(|s| s.light.image.format = EnvironmentFormat::Rgbm), |f| {
+                f.settings.shading.environment_format == EnvironmentFormat::Rgbm
+            }),
         ],
     )
 }

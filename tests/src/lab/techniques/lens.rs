@@ -1,12 +1,12 @@
 //! Techniques between scene and sensor, and frames that are accumulated or upscaled.
 
+use super::Change::{Function, Options};
 use super::{Choice, Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::{Setup, Truth};
 use crate::lab::technique::Measured;
 use framegraph_passes::effects::bloom::Threshold;
 use framegraph_passes::effects::depth::structure::Resolution;
 use framegraph_passes::effects::dof::DofSettings;
-use framegraph_passes::effects::taa::JitterPattern;
 use framegraph_passes::effects::upscale::UpscaleFilter;
 use framegraph_passes::gpu_scene::punctual::FroxelSettings;
 use framegraph_passes::{BloomSettings, FogSettings, LightSearch, TaaSettings, Upscale};
@@ -19,27 +19,17 @@ pub(super) fn techniques() -> Vec<Technique> {
 
 fn temporal() -> Technique {
     let one = base("columns");
-    fn sums(setup: &mut Setup) -> &mut TaaSettings {
-        setup.settings.taa.get_or_insert(TaaSettings::DEFAULT)
-    }
     pictures(
         "taa",
         "Temporal anti-aliasing: the picture after 32 frames of a still scene. The noise is the deviation of the next 16 frames from their mean.",
         ("8×8 supersampling, averaged as linear display light.", Truth::Supersampled(one, 8)),
         one,
         &[
-            ("none", |_| (), |f| f.settings.taa.is_none()),
-            ("a share of 0.12, Filament's", |s| _ = sums(s), |f| f.settings.taa == Some(TaaSettings::DEFAULT)),
-            ("a share of 0.05", |s| sums(s).feedback = 0.05, nowhere),
-            ("the input not filtered", |s| sums(s).filter_input = false, nowhere),
-            (
-                "the mean of all frames",
-                |s| {
-                    let own = sums(s);
-                    (own.converge, own.filter_input, own.jitter) = (true, false, JitterPattern::Halton32);
-                },
-                nowhere,
-            ),
+            ("none", Options(""), |f| f.settings.taa.is_none()),
+            ("a share of 0.12, Filament's", Options("taa=on"), |f| f.settings.taa == Some(TaaSettings::DEFAULT)),
+            ("a share of 0.05", Options("taa=on:feedback=0.05"), nowhere),
+            ("the input not filtered", Options("taa=on:filter-input=off"), nowhere),
+            ("the mean of all frames", Options("taa=on:converge=on,filter-input=off,jitter=halton32"), nowhere),
         ],
     )
 }
@@ -57,33 +47,35 @@ fn upscaling() -> Technique {
         ("the frame at full resolution.", Truth::Frame(whole)),
         whole,
         &[
-            ("100 %", |_| (), |f| f.settings.upscale.is_none()),
-            ("77 %, FSR", |s| drawn(s, 77, UpscaleFilter::Fsr), nowhere),
-            ("67 %, FSR", |s| drawn(s, 67, UpscaleFilter::Fsr), nowhere),
-            ("50 %, FSR", |s| drawn(s, 50, UpscaleFilter::Fsr), nowhere),
-            ("50 %, bilinear", |s| drawn(s, 50, UpscaleFilter::Bilinear), nowhere),
+            ("100 %", Options(""), |f| f.settings.upscale.is_none()),
+            ("77 %, FSR", Function(|s| drawn(s, 77, UpscaleFilter::Fsr)), nowhere),
+            ("67 %, FSR", Function(|s| drawn(s, 67, UpscaleFilter::Fsr)), nowhere),
+            ("50 %, FSR", Function(|s| drawn(s, 50, UpscaleFilter::Fsr)), nowhere),
+            ("50 %, bilinear", Function(|s| drawn(s, 50, UpscaleFilter::Bilinear)), nowhere),
         ],
     )
 }
 
 fn bloom_levels() -> Technique {
-    fn glowing(setup: &mut Setup, levels: u8) {
-        let bloom = BloomSettings { strength: 0.3, threshold: Threshold::None, levels, ..BloomSettings::DEFAULT };
-        setup.settings.bloom = Some(bloom);
-    }
+    let bloom = BloomSettings {
+        strength: 0.3,
+        threshold: Threshold::None,
+        levels: BloomSettings::MAX_LEVELS,
+        ..BloomSettings::DEFAULT
+    };
     let mut truth = base("spheres");
-    glowing(&mut truth, BloomSettings::MAX_LEVELS);
+    truth.settings.bloom = Some(bloom);
     pictures(
         "bloom-levels",
         "Levels of bloom's pyramid, at a strength of 0.3 without a threshold.",
         ("as many levels as the picture has.", Truth::Frame(truth)),
         truth,
         &[
-            ("2", |s| glowing(s, 2), nowhere),
-            ("3", |s| glowing(s, 3), nowhere),
-            ("4", |s| glowing(s, 4), nowhere),
-            ("5", |s| glowing(s, 5), nowhere),
-            ("6, the default", |s| glowing(s, 6), nowhere),
+            ("2", Options("bloom.levels=2"), nowhere),
+            ("3", Options("bloom.levels=3"), nowhere),
+            ("4", Options("bloom.levels=4"), nowhere),
+            ("5", Options("bloom.levels=5"), nowhere),
+            ("6, the default", Options("bloom.levels=6"), nowhere),
         ],
     )
 }
@@ -116,10 +108,10 @@ fn dof_rings() -> Technique {
         truth,
         setup,
         &[
-            ("3", |s| s.settings.dof = Some(open_lens(3, Resolution::Full)), nowhere),
-            ("5, the default", |s| s.settings.dof = Some(open_lens(5, Resolution::Full)), nowhere),
-            ("8", |s| s.settings.dof = Some(open_lens(8, Resolution::Full)), nowhere),
-            ("12", |s| s.settings.dof = Some(open_lens(12, Resolution::Full)), nowhere),
+            ("3", Function(|s| s.settings.dof = Some(open_lens(3, Resolution::Full))), nowhere),
+            ("5, the default", Function(|s| s.settings.dof = Some(open_lens(5, Resolution::Full))), nowhere),
+            ("8", Function(|s| s.settings.dof = Some(open_lens(8, Resolution::Full))), nowhere),
+            ("12", Function(|s| s.settings.dof = Some(open_lens(12, Resolution::Full))), nowhere),
         ],
     )
 }
@@ -132,8 +124,8 @@ fn dof_resolution() -> Technique {
         truth,
         setup,
         &[
-            ("half, the default", |s| s.settings.dof = Some(open_lens(5, Resolution::Half)), nowhere),
-            ("full", |s| s.settings.dof = Some(open_lens(5, Resolution::Full)), nowhere),
+            ("half, the default", Function(|s| s.settings.dof = Some(open_lens(5, Resolution::Half))), nowhere),
+            ("full", Function(|s| s.settings.dof = Some(open_lens(5, Resolution::Full))), nowhere),
         ],
     )
 }
@@ -184,20 +176,19 @@ fn fog() -> Technique {
 fn froxels() -> Technique {
     let mut truth = base("lamps:250");
     (truth.lights, truth.ev100) = (LightSearch::All, 8.0);
-    fn cut(setup: &mut Setup, tiles: u32, slices: u32) {
-        setup.lights = LightSearch::Froxels(FroxelSettings { tiles, slices, ..FroxelSettings::DEFAULT });
-    }
     pictures(
         "froxel-resolution",
         "Froxel resolution in tiles and depth slices for 250 punctual lights; coarser froxels have longer lists.",
         ("a loop over all lights.", Truth::Frame(truth)),
         truth,
         &[
-            ("24 tiles, 4 slices", |s| cut(s, 24, 4), nowhere),
-            ("24 tiles, 16 slices", |s| cut(s, 24, 16), nowhere),
-            ("144 tiles, 4 slices", |s| cut(s, 144, 4), nowhere),
-            ("144 tiles, 16 slices", |s| cut(s, 144, 16), |f| f.lights == LightSearch::Auto(FroxelSettings::DEFAULT)),
-            ("144 tiles, 32 slices", |s| cut(s, 144, 32), nowhere),
+            ("24 tiles, 4 slices", Options("lights=froxels:tiles=24,slices=4"), nowhere),
+            ("24 tiles, 16 slices", Options("lights=froxels:tiles=24,slices=16"), nowhere),
+            ("144 tiles, 4 slices", Options("lights=froxels:tiles=144,slices=4"), nowhere),
+            ("144 tiles, 16 slices", Options("lights=froxels:tiles=144,slices=16"), |f| {
+                f.lights == LightSearch::Auto(FroxelSettings::DEFAULT)
+            }),
+            ("144 tiles, 32 slices", Options("lights=froxels:tiles=144,slices=32"), nowhere),
         ],
     )
 }

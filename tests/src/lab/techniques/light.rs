@@ -1,5 +1,6 @@
 //! Techniques of surfaces and lighting.
 
+use super::Change::{Function, Options};
 use super::{Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::Truth;
 use crate::lab::technique::Measured;
@@ -38,16 +39,16 @@ fn visibility() -> Technique {
         ("the exact height-correlated Smith term with its own table.", truth),
         base("materials"),
         &[
-            ("exact V, exact table", |_| (), |f| f.settings.shading.visibility == Visibility::Exact),
+            ("exact V, exact table", Options(""), |f| f.settings.shading.visibility == Visibility::Exact),
             (
                 "fast V, fast table",
-                |s| {
+                Function(|s| {
                     (s.settings.shading.visibility, s.settings.shading.table) = (Visibility::Fast, Visibility::Fast);
                     s.light.dfg.visibility = Visibility::Fast;
-                },
+                }),
                 |f| f.settings.shading.visibility == Visibility::Fast,
             ),
-            ("fast V, exact table", |s| s.settings.shading.visibility = Visibility::Fast, nowhere),
+            ("fast V, exact table", Options("shade=visibility=fast,table=exact"), nowhere),
         ],
     )
 }
@@ -64,12 +65,8 @@ fn precision(name: &str, scene: &'static str) -> Technique {
         ("shading in f32.", Truth::Frame(full)),
         full,
         &[
-            ("f32", |_| (), |f| f.settings.shading.precision == Precision::Full),
-            (
-                "f16",
-                |s| s.settings.shading.precision = Precision::Half,
-                |f| f.settings.shading.precision == Precision::Half,
-            ),
+            ("f32", Options(""), |f| f.settings.shading.precision == Precision::Full),
+            ("f16", Options("shade=precision=f16"), |f| f.settings.shading.precision == Precision::Half),
         ],
     )
 }
@@ -83,9 +80,9 @@ fn roughness_floor() -> Technique {
         ("a minimum of 0.045, the lowest that the frame allows.", Truth::Frame(truth)),
         truth,
         &[
-            ("0.045", |_| (), |f| f.settings.shading.roughness_floor == 0.045),
-            ("0.089", |s| s.settings.shading.roughness_floor = 0.089, |f| f.settings.shading.roughness_floor == 0.089),
-            ("0.2", |s| s.settings.shading.roughness_floor = 0.2, nowhere),
+            ("0.045", Options(""), |f| f.settings.shading.roughness_floor == 0.045),
+            ("0.089", Options("shade=floor=0.089"), |f| f.settings.shading.roughness_floor == 0.089),
+            ("0.2", Options("shade=floor=0.2"), nowhere),
         ],
     )
 }
@@ -99,17 +96,11 @@ fn specular_aa() -> Technique {
         ("8×8 supersampling without it, averaged as linear light.", Truth::Supersampled(sharp, 8)),
         sharp,
         &[
-            ("none", |_| (), |f| f.settings.shading.specular_aa.is_none()),
-            (
-                "variance .15, at most .2",
-                |s| s.settings.shading.specular_aa = Some(SpecularAa::FILAMENT),
-                |f| f.settings.shading.specular_aa == Some(SpecularAa::FILAMENT),
-            ),
-            (
-                "variance .25, at most .18",
-                |s| s.settings.shading.specular_aa = Some(SpecularAa { variance: 0.25, threshold: 0.18 }),
-                nowhere,
-            ),
+            ("none", Options(""), |f| f.settings.shading.specular_aa.is_none()),
+            ("variance .15, at most .2", Options("shade=aa=on"), |f| {
+                f.settings.shading.specular_aa == Some(SpecularAa::FILAMENT)
+            }),
+            ("variance .25, at most .18", Options("shade=aa=0.25:0.18"), nowhere),
         ],
     )
 }
@@ -123,17 +114,13 @@ fn cube_levels() -> Technique {
         ("eight levels of a cube of 512 texels.", Truth::Frame(truth)),
         truth,
         &[
-            (
-                "5",
-                |s| (s.light.image.cube_texels, s.light.image.levels) = (256, 5),
-                |f| f.settings.shading.light(f.quality).image.levels == 5,
-            ),
-            ("6", |s| (s.light.image.cube_texels, s.light.image.levels) = (256, 6), nowhere),
-            (
-                "7",
-                |s| (s.light.image.cube_texels, s.light.image.levels) = (256, 7),
-                |f| f.settings.shading.light(f.quality).image.levels == 7,
-            ),
+            ("5", Function(|s| (s.light.image.cube_texels, s.light.image.levels) = (256, 5)), |f| {
+                f.settings.shading.light(f.quality).image.levels == 5
+            }),
+            ("6", Function(|s| (s.light.image.cube_texels, s.light.image.levels) = (256, 6)), nowhere),
+            ("7", Function(|s| (s.light.image.cube_texels, s.light.image.levels) = (256, 7)), |f| {
+                f.settings.shading.light(f.quality).image.levels == 7
+            }),
         ],
     )
 }
@@ -147,13 +134,11 @@ fn cube_size() -> Technique {
         ("a cube of 512 texels.", Truth::Frame(truth)),
         truth,
         &[
-            ("64", |s| (s.light.image.cube_texels, s.light.image.levels) = (64, 6), nowhere),
-            ("128", |s| s.light.image.cube_texels = 128, nowhere),
-            (
-                "256",
-                |s| s.light.image.cube_texels = 256,
-                |f| f.settings.shading.light(f.quality).image.cube_texels == 256,
-            ),
+            ("64", Function(|s| (s.light.image.cube_texels, s.light.image.levels) = (64, 6)), nowhere),
+            ("128", Function(|s| s.light.image.cube_texels = 128), nowhere),
+            ("256", Function(|s| s.light.image.cube_texels = 256), |f| {
+                f.settings.shading.light(f.quality).image.cube_texels == 256
+            }),
         ],
     )
 }

@@ -1,5 +1,6 @@
 //! Techniques of the picture: formats, tone curves in tables, quantization.
 
+use super::Change::Options;
 use super::{Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::Truth;
 use crate::lab::technique::Measured;
@@ -234,8 +235,8 @@ fn post_passes() -> Technique {
         ("all effects in the color pass, which stores no radiance.", Truth::Frame(one)),
         one,
         &[
-            ("in the color pass", |_| (), |f| !f.settings.split_post),
-            ("a pass an effect", |s| s.settings.split_post = true, nowhere),
+            ("in the color pass", Options(""), |f| !f.settings.split_post),
+            ("a pass an effect", Options("split-post=on"), nowhere),
         ],
     )
 }

@@ -1,12 +1,12 @@
 //! Screen-space techniques and shadows.
 
+use super::Change::Options;
 use super::{Choice, Technique, base, formula, nowhere, number, pictures};
 use crate::lab::studio::{Setup, Truth};
 use crate::lab::technique::Measured;
 use crate::measure::occlusion::{column, corner_columns, corner_error, corner_stage, mean_and_deviation};
 use framegraph_passes::effects::depth::structure::Resolution;
 use framegraph_passes::effects::occlusion::{Gtao, Method, OcclusionSettings};
-use framegraph_passes::gpu_scene::punctual::FroxelSettings;
 use framegraph_passes::gpu_scene::shadow_views::{ShadowFilter, ShadowSettings, Splits};
 use framegraph_passes::{FrameSettings, LightSearch, Precision};
 use framegraph_wgpu::Gpu;
@@ -107,15 +107,10 @@ fn resolution() -> Technique {
         ("ambient occlusion at full resolution.", Truth::Frame(full)),
         full,
         &[
-            ("full", |_| (), |f| f.settings.occlusion.is_some_and(|o| o.resolution == Resolution::Full)),
-            (
-                "half",
-                |s| {
-                    let half = OcclusionSettings { resolution: Resolution::Half, ..OcclusionSettings::SAO };
-                    s.settings.occlusion = Some(half);
-                },
-                |f| f.settings.occlusion.is_some_and(|o| o.resolution == Resolution::Half),
-            ),
+            ("full", Options(""), |f| f.settings.occlusion.is_some_and(|o| o.resolution == Resolution::Full)),
+            ("half", Options("ao.resolution=half"), |f| {
+                f.settings.occlusion.is_some_and(|o| o.resolution == Resolution::Half)
+            }),
         ],
     )
 }
@@ -150,9 +145,9 @@ fn glass_layers() -> Technique {
         ("four layers, the most that the frame allows.", Truth::Frame(truth)),
         truth,
         &[
-            ("1", |s| s.settings.glass_layers = 1, |f| f.settings.glass_layers == 1),
-            ("2", |s| s.settings.glass_layers = 2, nowhere),
-            ("3", |s| s.settings.glass_layers = 3, |f| f.settings.glass_layers == 3),
+            ("1", Options("glass-layers=1"), |f| f.settings.glass_layers == 1),
+            ("2", Options("glass-layers=2"), nowhere),
+            ("3", Options("glass-layers=3"), |f| f.settings.glass_layers == 3),
         ],
     )
 }
@@ -167,15 +162,11 @@ fn sunlit() -> Setup {
     setup
 }
 
-fn shadows(setup: &mut Setup) -> &mut ShadowSettings {
-    setup.settings.shadows.get_or_insert(ShadowSettings::DEFAULT)
-}
-
 /// Returns the reference: hard shadows of a high-resolution map, averaged over many suns.
 fn suns() -> (&'static str, Truth) {
     let mut setup = sunlit();
-    *shadows(&mut setup) =
-        ShadowSettings { cascades: 4, splits: Splits::Practical(0.8), ..ShadowSettings::texels(2048) };
+    let splits = Splits::Practical(0.8);
+    setup.settings.shadows = Some(ShadowSettings { cascades: 4, splits, ..ShadowSettings::texels(2048) });
     (
         "the mean of 32 frames with hard shadows from different points of the sun's disc, in four maps of 2048² texels.",
         Truth::Suns(setup, 32),
@@ -189,20 +180,16 @@ fn shadow_filter() -> Technique {
         suns(),
         sunlit(),
         &[
-            ("no shadows", |s| s.settings.shadows = None, |f| f.settings.shadows.is_none()),
-            (
-                "PCF",
-                |s| shadows(s).filter = ShadowFilter::Pcf,
-                |f| f.settings.shadows.is_some_and(|s| s.filter == ShadowFilter::Pcf),
-            ),
-            ("DPCF", |s| shadows(s).filter = ShadowFilter::Dpcf, nowhere),
-            (
-                "PCSS",
-                |s| shadows(s).filter = ShadowFilter::Pcss,
-                |f| f.settings.shadows.is_some_and(|s| s.filter == ShadowFilter::Pcss),
-            ),
-            ("VSM", |s| shadows(s).filter = ShadowFilter::Vsm, nowhere),
-            ("EVSM", |s| shadows(s).filter = ShadowFilter::Evsm, nowhere),
+            ("no shadows", Options("shadow=off"), |f| f.settings.shadows.is_none()),
+            ("PCF", Options("shadow.filter=pcf"), |f| {
+                f.settings.shadows.is_some_and(|s| s.filter == ShadowFilter::Pcf)
+            }),
+            ("DPCF", Options("shadow.filter=dpcf"), nowhere),
+            ("PCSS", Options("shadow.filter=pcss"), |f| {
+                f.settings.shadows.is_some_and(|s| s.filter == ShadowFilter::Pcss)
+            }),
+            ("VSM", Options("shadow.filter=vsm"), nowhere),
+            ("EVSM", Options("shadow.filter=evsm"), nowhere),
         ],
     )
 }
@@ -214,10 +201,10 @@ fn shadow_cascades() -> Technique {
         suns(),
         sunlit(),
         &[
-            ("1", |s| (shadows(s).cascades, shadows(s).map_texels) = (1, 512), |f| cascades(f) == Some(1)),
-            ("2", |s| (shadows(s).cascades, shadows(s).map_texels) = (2, 512), |f| cascades(f) == Some(2)),
-            ("3", |s| (shadows(s).cascades, shadows(s).map_texels) = (3, 512), |f| cascades(f) == Some(3)),
-            ("4", |s| (shadows(s).cascades, shadows(s).map_texels) = (4, 512), |f| cascades(f) == Some(4)),
+            ("1", Options("shadow.cascades=1 shadow.map-size=512"), |f| cascades(f) == Some(1)),
+            ("2", Options("shadow.cascades=2 shadow.map-size=512"), |f| cascades(f) == Some(2)),
+            ("3", Options("shadow.cascades=3 shadow.map-size=512"), |f| cascades(f) == Some(3)),
+            ("4", Options("shadow.cascades=4 shadow.map-size=512"), |f| cascades(f) == Some(4)),
         ],
     )
 }
@@ -233,10 +220,10 @@ fn shadow_size() -> Technique {
         suns(),
         sunlit(),
         &[
-            ("256²", |s| shadows(s).map_texels = 256, nowhere),
-            ("512²", |s| shadows(s).map_texels = 512, nowhere),
-            ("1024²", |s| shadows(s).map_texels = 1024, |f| f.settings.shadows.is_some_and(|s| s.map_texels == 1024)),
-            ("2048²", |s| shadows(s).map_texels = 2048, |f| f.settings.shadows.is_some_and(|s| s.map_texels == 2048)),
+            ("256²", Options("shadow.map-size=256"), nowhere),
+            ("512²", Options("shadow.map-size=512"), nowhere),
+            ("1024²", Options("shadow.map-size=1024"), |f| f.settings.shadows.is_some_and(|s| s.map_texels == 1024)),
+            ("2048²", Options("shadow.map-size=2048"), |f| f.settings.shadows.is_some_and(|s| s.map_texels == 2048)),
         ],
     )
 }
@@ -249,10 +236,10 @@ fn antialiasing() -> Technique {
         ("8×8 supersampling, averaged as linear display light.", Truth::Supersampled(one, 8)),
         one,
         &[
-            ("none", |_| (), |f| f.settings.samples == 1 && !f.settings.fxaa),
-            ("FXAA", |s| s.settings.fxaa = true, |f| f.settings.samples == 1 && f.settings.fxaa),
-            ("4 samples", |s| s.settings.samples = 4, |f| f.settings.samples == 4),
-            ("4 samples, FXAA", |s| (s.settings.samples, s.settings.fxaa) = (4, true), nowhere),
+            ("none", Options(""), |f| f.settings.samples == 1 && !f.settings.fxaa),
+            ("FXAA", Options("fxaa=on"), |f| f.settings.samples == 1 && f.settings.fxaa),
+            ("4 samples", Options("msaa=4"), |f| f.settings.samples == 4),
+            ("4 samples, FXAA", Options("msaa=4 fxaa=on"), nowhere),
         ],
     )
 }
@@ -266,12 +253,8 @@ fn light_search() -> Technique {
         ("a loop over all lights.", Truth::Frame(all)),
         all,
         &[
-            ("all", |_| (), |f| f.lights == LightSearch::All),
-            (
-                "by froxels",
-                |s| s.lights = LightSearch::Froxels(FroxelSettings::DEFAULT),
-                |f| f.lights != LightSearch::All,
-            ),
+            ("all", Options(""), |f| f.lights == LightSearch::All),
+            ("by froxels", Options("lights=froxels"), |f| f.lights != LightSearch::All),
         ],
     )
 }

@@ -3,13 +3,13 @@
 use crate::parts::Parts;
 use framegraph::{Entry, Exit, Extent, Format, Options, Plan, Scratch, Texture, TextureDesc, compile};
 use framegraph_passes::StageError;
-use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
+use framegraph_wgpu::{Frame, Gpu, Imports, read_texture, texture_2d};
 use glam::DVec3;
 use half::f16;
 use std::error::Error;
 use tests::executors;
 use wgpu::util::{DeviceExt, TextureDataOrder};
-use wgpu::{Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages};
+use wgpu::{TextureFormat, TextureUsages};
 
 /// Pixels, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,16 +61,7 @@ impl Image {
         let halves = |c: &DVec3| [c.x, c.y, c.z, 1.0].map(|x| f16::from_f64(x).to_bits().to_le_bytes());
         let bytes: Vec<u8> = self.texels.iter().flat_map(|c| halves(c).concat()).collect();
         let [width, height] = self.size;
-        let desc = TextureDescriptor {
-            label: Some("picture"),
-            size: Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: TextureFormat::Rgba16Float,
-            usage: TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        };
+        let desc = texture_2d("picture", [width, height], TextureFormat::Rgba16Float, TextureUsages::TEXTURE_BINDING);
         gpu.device.create_texture_with_data(&gpu.queue, &desc, TextureDataOrder::LayerMajor, &bytes)
     }
 }

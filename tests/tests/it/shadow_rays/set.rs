@@ -5,9 +5,7 @@ use framegraph::{Options, Plan, Scratch, Target, compile};
 use framegraph_passes::effects::occlusion::OcclusionSettings;
 use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_passes::gpu_scene::view::Background;
-use framegraph_passes::{
-    CameraView, LightSearch, Precision, Quality, Settings, Shading, ViewSettings, World, standard,
-};
+use framegraph_passes::{CameraView, Precision, Quality, Settings, Shading, ViewSettings, World, standard};
 use framegraph_scene::{Camera, Environment, Light, LightKind, Projection, Scene, progress};
 use framegraph_wgpu::{Frame, Gpu, Imports, read_texture};
 use glam::{DVec3, Mat4, Vec2};
@@ -72,11 +70,8 @@ impl Set {
             camera: self.camera.clone(),
             size_px: SIZE,
             ev100: 10.0,
-            environment_intensity: 1.0,
             shadows: settings.shadows,
-            lights: LightSearch::default(),
-            lod_error_px: 0.0,
-            visible_layers: 1,
+            ..ViewSettings::default()
         };
         let mut view = CameraView::new(&scene, &lighting.image, &Background::None, &seen);
         for map in view.shadows.iter_mut().flat_map(|shadows| &mut shadows.maps) {

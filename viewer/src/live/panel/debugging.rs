@@ -7,8 +7,8 @@ use crate::live::bisecting::Bisecting;
 use crate::panel::{color, theme};
 use crate::session::Session;
 use egui::{Grid, RichText, ScrollArea, TextEdit, Ui, vec2};
+use framegraph_check::Budget;
 use framegraph_wgpu::debug::Mode;
-use program::budget::Budget;
 
 /// Shows debug modes, bisection and limits.
 pub fn debugging(ui: &mut Ui, live: &mut Live, session: &mut Session) {
@@ -112,9 +112,9 @@ fn budget(ui: &mut Ui, live: &mut Live, session: &Session) {
     };
     match session.plan.as_ref().and_then(|plan| plan.plan.as_ref()) {
         None => _ = ui.label("A saved plan has no graph to explain the costs. Open the graph"),
-        Some(plan) => match budget.broken(plan) {
-            None => _ = ui.label("The plan meets all limits"),
-            Some(lines) => lines.lines().for_each(|line| error(ui, line)),
+        Some(plan) => match budget.check(plan) {
+            Ok(()) => _ = ui.label("The plan meets all limits"),
+            Err(exceeded) => exceeded.to_string().lines().for_each(|line| error(ui, line)),
         },
     }
 }

@@ -4,6 +4,9 @@ mod controls;
 mod histogram;
 mod parts;
 mod picture;
+mod remote;
+
+pub use remote::remote_preview;
 
 use crate::drawing::Item;
 use crate::live::Live;
@@ -27,8 +30,16 @@ pub fn preview(ui: &mut Ui, live: &mut Live, session: &mut Session) {
         live.preview.look_at(&resource.name);
     }
     live.inspect(session);
-    let blocking = live.is_blocking();
-    let preview = &mut live.preview;
+    let (blocking, read) = (live.is_blocking(), live.read());
+    if contents(ui, &mut live.preview, session, blocking, &read) {
+        live.file_request = Some(FileRequest::SaveTexture);
+    }
+}
+
+/// Shows a preview, and returns whether a file dialog is requested. `read` are files that must not be overwritten.
+fn contents(ui: &mut Ui, preview: &mut Preview, session: &mut Session, blocking: bool, read: &[PathBuf]) -> bool {
+    let plan = session.plan.clone();
+    let mut asks = false;
     ui.horizontal_wrapped(|ui| {
         if let Some(plan) = &plan {
             names(ui, preview, plan, session);
@@ -46,13 +57,13 @@ pub fn preview(ui: &mut Ui, live: &mut Live, session: &mut Session) {
     let ctx = ui.ctx().clone();
     preview.display(blocking, move || ctx.request_repaint());
     if preview.found.is_some() {
-        file(ui, live);
-        let preview = &mut live.preview;
+        asks = file(ui, preview, read);
         histogram::histogram(ui, preview);
         picture::picture(ui, preview);
     } else if preview.is_reading() {
         ui.spinner();
     }
+    asks
 }
 
 /// Shows the list of textures. A choice selects the resource everywhere.
@@ -81,26 +92,25 @@ fn names(ui: &mut Ui, preview: &mut Preview, plan: &PlanData, session: &mut Sess
         .on_hover_text("Displayed texture; follows the selected resource");
 }
 
-/// Shows the path of the file to save.
-fn file(ui: &mut Ui, live: &mut Live) {
-    ui.horizontal(|ui| {
+/// Shows the path of the file to save, and returns whether a file dialog is requested.
+fn file(ui: &mut Ui, preview: &mut Preview, read: &[PathBuf]) -> bool {
+    let asks = ui.horizontal(|ui| {
         let width = (ui.available_width() - 116.0).max(40.0);
-        let edit = TextEdit::singleline(&mut live.preview.path).hint_text("TEXTURE.png or .exr").desired_width(width);
+        let edit = TextEdit::singleline(&mut preview.path).hint_text("TEXTURE.png or .exr").desired_width(width);
         ui.add(edit);
-        let path = PathBuf::from(live.preview.path.trim());
+        let path = PathBuf::from(preview.path.trim());
         let tip = "Save the picture as PNG, or the values of all channels as EXR";
-        let named = !live.preview.path.trim().is_empty();
+        let named = !preview.path.trim().is_empty();
         if ui.add_enabled(named, egui::Button::new("Save")).on_hover_text(tip).clicked() {
-            let saved = save(&live.preview, &path, &live.read());
-            live.preview.saved = Some(saved.map(|()| format!("saved {}", path.display())));
+            let saved = save(preview, &path, read);
+            preview.saved = Some(saved.map(|()| format!("saved {}", path.display())));
         }
-        if ui.button("Save…").on_hover_text("Choose the file in a dialog").clicked() {
-            live.file_request = Some(FileRequest::SaveTexture);
-        }
+        ui.button("Save…").on_hover_text("Choose the file in a dialog").clicked()
     });
-    match &live.preview.saved {
+    match &preview.saved {
         Some(Ok(saved)) => _ = ui.label(saved),
         Some(Err(error)) => _ = ui.label(RichText::new(error).color(ui.visuals().error_fg_color)),
         None => {}
     }
+    asks.inner
 }

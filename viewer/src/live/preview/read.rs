@@ -21,7 +21,7 @@ pub struct Found {
     pub non_finite: usize,
     /// Histogram of each channel over `span`.
     pub histogram: Vec<[u32; BINS]>,
-    /// Distance of the near plane in meters, for depth.
+    /// Distance of the near plane in meters, for depth; 0 if unknown.
     pub near_m: f32,
 }
 
@@ -34,21 +34,19 @@ pub fn read(running: &Running, inspector: &mut Inspector, target: InspectTarget)
     let (executor, plan, world) = (frames.executor(), frames.plan(), &running.loaded.world);
     let found = inspector.inspect_target(executor, plan, frames.frame(), world, frames.imports(), target);
     let found = found.map_err(|e| e.to_string())?;
-    let (title, numbers) = (found.title(), found.texels.numbers());
-    let channels = found.texels.channels();
-    let span = span(&numbers, channels);
-    Ok(Found {
-        title,
-        non_finite: found.texels.non_finite(channels),
-        histogram: histogram(&numbers, channels, span),
-        texels: found.texels,
-        numbers,
-        span,
-        near_m: running.rig.camera(None).projection.near_m() as f32,
-    })
+    let near_m = running.rig.camera(None).projection.near_m() as f32;
+    Ok(Found::new(found.title(), found.texels, near_m))
 }
 
 impl Found {
+    /// Computes range and histogram of texels. `near_m` is the distance of the near plane in meters.
+    pub fn new(title: String, texels: Texels, near_m: f32) -> Self {
+        let (numbers, channels) = (texels.numbers(), texels.channels());
+        let span = span(&numbers, channels);
+        let (non_finite, histogram) = (texels.non_finite(channels), histogram(&numbers, channels, span));
+        Self { title, non_finite, histogram, texels, numbers, span, near_m }
+    }
+
     /// Returns the values of a texel; `None` outside the picture.
     pub fn texel(&self, [x, y]: [u32; 2]) -> Option<[f32; 4]> {
         let [width, height] = self.texels.size;

@@ -82,7 +82,7 @@ fn parse() -> Result<Wanted, String> {
             "seconds" => {
                 options.limit = Duration::from_secs(item.parse("a number of seconds", |text| text.parse().ok())?);
             }
-            _ => options.memory_bytes = item.parse("bytes, such as 2GiB", program::bytes)?,
+            _ => options.memory_bytes = item.parse("bytes, such as 2GiB", framegraph_check::budget::bytes)?,
         }
     }
     options.folder = absolute(options.folder)?;

@@ -78,6 +78,7 @@ fn needs_memory(ctx: &RuleInput<'_>, resource: ResourceId, why: MemoryNeed) -> b
             let several = |t: &TextureDesc| t.mips != 1 || t.layers != 1 && !layers || t.dimension != Dimension::D2;
             ctx.texture(resource).is_some_and(several)
         }
+        MemoryNeed::NotSaved => !ctx.memoryless_saves(),
         MemoryNeed::View => ctx.planned(resource).srgb_views && !ctx.plan.caps().memoryless_views,
         MemoryNeed::LoadedOrStored => {
             let loads = |a: &Attachment| a.load == LoadOp::Load || a.stencil_load == LoadOp::Load;

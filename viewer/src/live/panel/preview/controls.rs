@@ -30,7 +30,7 @@ pub(super) fn controls(ui: &mut Ui, preview: &mut Preview) {
         }
         let mut shown = look.shown;
         ui.selectable_value(&mut shown, Shown::Values, "values").on_hover_text("Values of the channels");
-        if found.is_depth() {
+        if found.is_depth() && found.near_m > 0.0 {
             let tip = "Distance from the camera in meters";
             ui.selectable_value(&mut shown, Shown::Distance, "distance").on_hover_text(tip);
         }

@@ -71,7 +71,7 @@ fn values(found: &Found, [x, y]: [u32; 2]) -> String {
     let names = if found.is_depth() { ["depth", "", "", ""] } else { ["R", "G", "B", "A"] };
     let numbers = texel.iter().zip(names).take(found.channels()).map(|(value, name)| format!("{name} {value:.6}"));
     let mut text = format!("{x}, {y}: {}", numbers.collect::<Vec<_>>().join("  "));
-    if found.is_depth() {
+    if found.is_depth() && found.near_m > 0.0 {
         text += &format!("  {:.3} m", found.near_m / texel[0]);
     }
     text
