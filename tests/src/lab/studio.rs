@@ -305,23 +305,17 @@ impl Ready {
     /// # Errors
     /// The device fails.
     pub fn turned(&mut self, gpu: &Gpu, angle_rad: f64) -> Outcome<Picture> {
-        let [width, height] = self.size_px.map(f64::from);
         let (turn, center) = (DQuat::from_rotation_y(angle_rad), self.scene.bounds_above_ground().center());
-        let mut camera = self.scene.default_camera(width / height);
-        camera.eye = center + turn * (camera.eye - center);
-        camera.world_from_view = turn * camera.world_from_view;
+        let mut camera = self.scene.default_camera(f64::from(self.size_px[0]) / f64::from(self.size_px[1]));
+        (camera.eye, camera.world_from_view) = (center + turn * (camera.eye - center), turn * camera.world_from_view);
         self.moment.camera = camera;
         let before = &self.world.views.get(ViewId::MAIN)?.view;
-        let view = CameraView::new(&self.scene, &self.world.lighting.image, &Background::Environment, &self.moment);
-        let mut view = view.after(before);
-        if let Some(taa) = self.settings.taa {
-            view.jitter(taa.jitter_px(self.drawn));
-        }
+        let light = &self.world.lighting.image;
+        let mut view = CameraView::new(&self.scene, light, &Background::Environment, &self.moment).after(before);
+        self.settings.taa.iter().for_each(|taa| view.jitter(taa.jitter_px(self.drawn)));
         self.world.set_view(gpu, ViewId::MAIN, view)?;
-        self.world.frame_index = FrameIndex(self.drawn);
-        self.drawn += 1;
+        (self.world.frame_index, self.drawn) = (FrameIndex(self.drawn), self.drawn + 1);
         self.executor.execute(&self.plan, &self.frame, &self.world, &Imports::new())?;
-        gpu.wait()?;
         self.read(gpu)
     }
 
