@@ -195,7 +195,9 @@ mod tests {
         };
         let rows = [(Effect::Occlusion, Proof::Variant), (Effect::SunShadows, Proof::Truer)];
         let asked = rows.into_iter().filter(|(effect, _)| settings.has(*effect));
-        Facts { rows: asked.map(row).collect(), ..Facts::default() }
+        let mut facts = Facts::default();
+        facts.rows = asked.map(row).collect();
+        facts
     }
 
     #[test]

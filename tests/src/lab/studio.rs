@@ -300,36 +300,22 @@ impl Ready {
         Ok(Some((squares.sum::<f64>() / (frames.len() * 3 * rest.linear.len()) as f64).sqrt()))
     }
 
-    /// Moves the camera around the vertical axis through the scene's center, by an angle from its first position. The next
-    /// frame has motion vectors from the previous one.
+    /// Draws one frame of a sequence: the camera is turned around the scene's vertical axis from its first position.
     ///
     /// # Errors
     /// The device fails.
-    pub fn turn(&mut self, gpu: &Gpu, angle_rad: f64) -> Outcome<()> {
-        let [width, height] = self.size_px.map(f64::from);
+    pub fn turned(&mut self, gpu: &Gpu, angle_rad: f64) -> Outcome<Picture> {
         let (turn, center) = (DQuat::from_rotation_y(angle_rad), self.scene.bounds_above_ground().center());
-        self.moment.camera = self.scene.default_camera(width / height);
-        let camera = &mut self.moment.camera;
-        camera.eye = center + turn * (camera.eye - center);
-        camera.world_from_view = turn * camera.world_from_view;
+        let mut camera = self.scene.default_camera(f64::from(self.size_px[0]) / f64::from(self.size_px[1]));
+        (camera.eye, camera.world_from_view) = (center + turn * (camera.eye - center), turn * camera.world_from_view);
+        self.moment.camera = camera;
         let before = &self.world.views.get(ViewId::MAIN)?.view;
-        let view = CameraView::new(&self.scene, &self.world.lighting.image, &Background::Environment, &self.moment);
-        let mut view = view.after(before);
-        if let Some(taa) = self.settings.taa {
-            view.jitter(taa.jitter_px(self.drawn));
-        }
-        Ok(self.world.set_view(gpu, ViewId::MAIN, view)?)
-    }
-
-    /// Draws one frame of a sequence and returns its picture, after [`Ready::turn`].
-    ///
-    /// # Errors
-    /// The device fails.
-    pub fn next(&mut self, gpu: &Gpu) -> Outcome<Picture> {
-        self.world.frame_index = FrameIndex(self.drawn);
-        self.drawn += 1;
+        let light = &self.world.lighting.image;
+        let mut view = CameraView::new(&self.scene, light, &Background::Environment, &self.moment).after(before);
+        self.settings.taa.iter().for_each(|taa| view.jitter(taa.jitter_px(self.drawn)));
+        self.world.set_view(gpu, ViewId::MAIN, view)?;
+        (self.world.frame_index, self.drawn) = (FrameIndex(self.drawn), self.drawn + 1);
         self.executor.execute(&self.plan, &self.frame, &self.world, &Imports::new())?;
-        gpu.wait()?;
         self.read(gpu)
     }
 

@@ -11,11 +11,11 @@ pub struct Temporal {
     /// Flicker: root mean square change between consecutive frames of channels that change by less than one step
     /// in the reference.
     pub flicker: f64,
-    /// Ghosting: mean share, 0 to 1, of the old value in channels that the reference has changed by more than 16 steps
-    /// from the previous frame, such as after a disocclusion.
+    /// Ghosting: mean share of the old value, 0 to 1, in channels that change by more than 16 steps in the reference.
+    /// Disocclusions cause such changes.
     pub ghost: f64,
-    /// Popping: the largest root mean square change of the error between consecutive frames, over the median of
-    /// these changes. 1 is even; a level of detail that changes at once gives a large value.
+    /// Popping: largest root mean square change of the error between consecutive frames, divided by the median change. 1
+    /// is even. A level of detail that changes at once gives a large value.
     pub pop: f64,
 }
 

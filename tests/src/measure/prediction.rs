@@ -17,7 +17,7 @@ use std::error::Error;
 pub const FEATURES: usize = 9;
 
 /// Returns the features of a view: 1, covered share of the picture, depth complexity, and logarithms of triangles, pixels
-/// and lights; then mean roughness, mean reflectance and the share of textured or transmissive materials. Instances
+/// and lights. Then follow mean roughness, mean reflectance, and the share of unlit or transmissive materials. Instances
 /// count as spheres about their bounds.
 pub fn features(scene: &Scene, size_px: [u32; 2]) -> [f64; FEATURES] {
     let camera = scene.default_camera(f64::from(size_px[0]) / f64::from(size_px[1]));

@@ -52,8 +52,7 @@ pub fn run(words: &[&str]) -> Outcome {
         studio.change(&mut ready, settings)?;
         let mut frames = Vec::new();
         for frame in 0..FRAMES {
-            ready.turn(&gpu, 0.01 * f64::from(frame))?;
-            frames.push(ready.next(&gpu)?);
+            frames.push(ready.turned(&gpu, 0.01 * f64::from(frame))?);
         }
         Ok::<_, Box<dyn std::error::Error>>(frames)
     };
