@@ -3,7 +3,7 @@
 use crate::bench::{Bench, RED, SHOW, TestResult, draw_of, fill_full, on_every_device};
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Texture, TextureDesc};
 use framegraph_wgpu::{
-    Binding, BindingReason, Cx, ExecuteError, Frame, Gpu, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
+    Binding, BindingReason, Cx, ExecuteError, Frame, Raster, RasterPipeline, RecordError, SamplerDesc, Shader,
     texture_2d,
 };
 
