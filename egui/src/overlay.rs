@@ -54,7 +54,9 @@ impl Overlay {
         let ctx = self.state.egui_ctx().clone();
         let mut output = ctx.run_ui(input, show);
         self.state.handle_platform_output(window, output.platform_output);
-        for (id, deltas) in output.textures_delta.set.drain() {
+        let mut set: Vec<_> = output.textures_delta.set.drain().collect();
+        set.sort_unstable_by_key(|(id, _)| *id);
+        for (id, deltas) in set {
             for delta in deltas {
                 self.renderer.update_texture(device, queue, id, &delta);
             }
@@ -79,7 +81,9 @@ impl Overlay {
         let mut pass = encoder.begin_render_pass(&pass).forget_lifetime();
         self.renderer.render(&mut pass, &jobs, &screen);
         drop(pass);
-        for id in output.textures_delta.free.drain() {
+        let mut free: Vec<_> = output.textures_delta.free.drain().collect();
+        free.sort_unstable();
+        for id in free {
             self.renderer.free_texture(&id);
         }
         encoder.finish()

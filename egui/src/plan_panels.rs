@@ -1,6 +1,8 @@
 //! Everything about one plan in one widget.
 
 mod recompiled;
+#[cfg(test)]
+mod tests;
 
 use crate::drawing::Item;
 use crate::editor;

@@ -1,14 +1,13 @@
 //! Cost of viewers in the frame, and the time until a texture arrives.
 
 use super::frame::{Blur, declare};
+use crate::SIZE;
 use framegraph::Aspect;
 use framegraph_wgpu::remote::{Connection, FromEngine, FromViewer, RemoteError, Server, TextureRequest};
 use framegraph_wgpu::{AdapterRequest, FrameLoop, Gpu};
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-/// Frame size in texels. Small, so that the time of the driver does not hide the cost.
-const SIZE: [u32; 2] = [64, 36];
 /// Frames of a block, and number of blocks of each kind.
 const BLOCK: usize = 100;
 const BLOCKS: usize = 20;

@@ -23,17 +23,17 @@ const PATTERN: &str = "
 const BRIGHT: &str = "
 @group(0) @binding(0) var image: texture_2d<f32>;
 @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let from = vec2u(at.xy) * 2;
-    let sum = textureLoad(image, from, 0) + textureLoad(image, from + 1, 0);
+    let first = vec2u(at.xy) * 2;
+    let sum = textureLoad(image, first, 0) + textureLoad(image, first + 1, 0);
     return max(sum * 0.5 - 1.0, vec4f());
 }";
 const SUM: &str = "
 @group(0) @binding(0) var image: texture_2d<f32>;
 @group(0) @binding(1) var bright: texture_2d<f32>;
 @fragment fn fs_main(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let from = vec2u(at.xy);
-    let half = min(from / 2, textureDimensions(bright) - 1);
-    let color = textureLoad(image, from, 0) + textureLoad(bright, half, 0);
+    let first = vec2u(at.xy);
+    let half = min(first / 2, textureDimensions(bright) - 1);
+    let color = textureLoad(image, first, 0) + textureLoad(bright, half, 0);
     return color / (color + 1.0);
 }";
 

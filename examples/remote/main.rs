@@ -6,7 +6,6 @@ mod frame;
 use frame::Blur;
 use framegraph_wgpu::remote::{DEFAULT_ADDRESS, Server};
 use framegraph_wgpu::{AdapterRequest, FrameLoop, Gpu};
-use program::interrupt;
 use std::error::Error;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -22,7 +21,7 @@ usage: remote_engine [--listen HOST:PORT] [--frames N]
   --measure            print what viewers cost the frame, and how long they wait for a texture
 
 WGPU_BACKEND and WGPU_ADAPTER_NAME select another adapter.
-Exit codes: 0 success, 1 device failure, 2 invalid option or address, 128 + N stopped by signal N.";
+Exit codes: 0 success, 1 device failure, 2 invalid option or address.";
 
 /// Frame size in texels.
 const SIZE: [u32; 2] = [640, 360];
@@ -48,7 +47,6 @@ fn main() -> ExitCode {
             }
         }
     }
-    interrupt::exit_when_asked();
     match Server::start(address, "remote_engine") {
         Ok(server) => finish(draw(server, frames)),
         Err(error) => {

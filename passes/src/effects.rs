@@ -16,7 +16,7 @@
 //! | [`bloom`] | bloom and lens flare |
 //! | [`post`] | color grading, tone mapping, vignette and encoding, fused into one pass |
 //! | [`fxaa`] | fast approximate anti-aliasing |
-//! | [`upscale`] | upscaling, sharpening and dynamic resolution |
+//! | [`upscale`] | upscaling and sharpening |
 //! | [`picking`] | the object at a pixel |
 //!
 //! An effect may use [`gpu_scene`](crate::gpu_scene), [`light`](crate::light), [`program`](crate::program),

@@ -48,7 +48,9 @@ fn read(text: &str) -> Result<Cow<'_, Code<'_>>, Fault> {
 /// effects share a name. Also if effects are given and the shader does not end with the socket
 /// `package::interface::epilogue`.
 pub fn resolve(module: &Module<'_>, features: &Features, effects: &[Effect<'_>]) -> Result<Shader, ShaderError> {
-    let known = |name: &str| Feature::all().chain(module.features.iter().copied()).any(|f| f.name() == name);
+    let known = |name: &str| {
+        Feature::all().chain([Feature::STEREO]).chain(module.features.iter().copied()).any(|f| f.name() == name)
+    };
     if let Some(unknown) = features.iter().find(|feature| !known(feature.name())) {
         return Err(ShaderError::UnknownFeature { name: unknown.name(), file: module.path.to_owned() });
     }

@@ -15,3 +15,4 @@ pub mod statistics;
 pub mod studio;
 pub mod technique;
 pub mod techniques;
+pub mod temporal;

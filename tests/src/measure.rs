@@ -2,8 +2,10 @@
 
 pub mod albedo;
 pub mod board;
+pub mod bounds;
 pub mod cards;
 pub mod columns;
+pub mod controller;
 pub mod facts;
 pub mod furnace;
 pub mod grading;
@@ -13,6 +15,7 @@ pub mod half_table;
 pub mod harmonics;
 pub mod lights;
 pub mod occlusion;
+pub mod prediction;
 pub mod reflection;
 pub mod specular;
 pub mod temporal;

@@ -127,7 +127,7 @@ impl Attached {
 
     /// Returns whether a plan and times have arrived.
     pub fn is_complete(&self) -> bool {
-        self.running.is_some() && !self.samples.is_empty()
+        self.running.is_some() && self.shown_at.is_some()
     }
 
     /// Applies the messages that have arrived, without blocking.
@@ -150,9 +150,9 @@ impl Attached {
                     // Samples of the previous plan may arrive after a change.
                     if self.running.as_ref().is_some_and(|running| running.compilation == sample.compilation) {
                         let max = (MAX_TIMES / sample.steps.len().max(1)).clamp(16, SHOWN);
+                        sampled |= sample.cpu_ms.is_some();
                         self.samples.push_back(sample);
                         self.samples.drain(..self.samples.len().saturating_sub(max));
-                        sampled = true;
                     }
                 }
                 Ok(News::Texture(texture)) => self.take_texture(texture),
@@ -302,11 +302,10 @@ fn times(samples: &VecDeque<FrameSample>, plan: &PlanData) -> TraceData {
         let gpu_ms = sorted(of_step().filter_map(|step| step.gpu_ms).collect());
         trace.steps.push(TracedStep { name, earlier, cpu_ms, gpu_ms });
     }
-    trace.frames.extend(samples.iter().map(|sample| TracedFrame {
-        number: sample.frame,
-        warm_up: false,
-        cpu_ms: sample.cpu_ms.unwrap_or(0.0),
-        gpu_ms: sample.gpu_ms,
+    // The first frames of a plan compile shaders, and are not measured.
+    trace.frames.extend(samples.iter().filter_map(|sample| {
+        let (number, cpu_ms, gpu_ms) = (sample.frame, sample.cpu_ms?, sample.gpu_ms);
+        Some(TracedFrame { number, warm_up: false, cpu_ms, gpu_ms })
     }));
     trace
 }

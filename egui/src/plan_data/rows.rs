@@ -193,6 +193,9 @@ pub struct Resource {
     pub kind: String,
     pub entry: Option<Entry>,
     pub exit: Option<String>,
+    /// Imports that may be bound to the same texture or buffer.
+    #[serde(default)]
+    pub may_alias: Vec<String>,
     pub shape: String,
     pub format: Option<String>,
     pub extent: Option<[u32; 2]>,

@@ -1,11 +1,10 @@
 //! A window with a render graph: a scene, an effect that is reloaded when it is saved, and panels that show the graph's plan.
 
 use framegraph::{DeclareError, Entry, Exit, Extent, Format, Intent, Pass, PassBuilder, Texture, TextureDesc, View};
-use framegraph_egui::PlanPanels;
 use framegraph_egui::overlay::winit::event_loop::{ActiveEventLoop, EventLoop};
 use framegraph_egui::overlay::winit::window::{Window, WindowId};
 use framegraph_egui::overlay::winit::{application::ApplicationHandler, event::WindowEvent};
-use framegraph_egui::overlay::{Overlay, wgpu};
+use framegraph_egui::{PlanPanels, overlay::Overlay, overlay::wgpu};
 use framegraph_wgpu::{Binding, Cx, Frame, FrameCommands, FrameLoop, Gpu, Imports, Raster};
 use framegraph_wgpu::{Record, RecordError, Shader, WindowSurface, format_of};
 use std::{error::Error, io::Write as _, sync::Arc, time::SystemTime};

@@ -20,3 +20,8 @@ pub use mark::ReportPlugin;
 pub use report::{Report, ReportError};
 pub use standard::{PostWorld, StandardPost, standard};
 pub use trace::{Device, TraceError};
+
+/// The guide in `docs/guide`, compiled as doc tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/guide/bevy.md")]
+struct Guide;

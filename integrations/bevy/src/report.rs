@@ -140,7 +140,7 @@ impl Report {
         row("stores", own.stores.to_string(), &|p| p.counts().resolves.to_string())?;
         row("stored", mib(own.stored_bytes), &|p| mib(p.traffic(frame).stored_bytes))?;
         row("memoryless textures", "0".into(), &|p| p.counts().memoryless.to_string())?;
-        row("transient memory", mib(own.transient_bytes), &|p| mib(p.memory().bytes))?;
+        row("transient memory", mib(own.transient_bytes), &|p| mib(allocated(p)))?;
         self.write_lists(out)
     }
 
@@ -152,7 +152,9 @@ impl Report {
                 writeln!(out, "- {operation} of `{texture}` in `{pass}`, {}: {cause}", mib(*bytes))?;
             }
             for (name, bytes) in memoryless(&planned.plan) {
-                writeln!(out, "- memoryless: `{name}`, {}", mib(bytes))?;
+                let saves = planned.plan.caps().memoryless_saves;
+                let note = if saves { "" } else { "; this device allocates it anyway" };
+                writeln!(out, "- memoryless: `{name}`, {}{note}", mib(bytes))?;
             }
             for names in merged(&planned.plan) {
                 writeln!(out, "- one render pass: {}", names.join(", "))?;
@@ -267,6 +269,12 @@ fn causes(
         None => Some(reason(Subject::Store(step, resource)).unwrap_or_else(|| "the contents are not used".into())),
     };
     [load, store]
+}
+
+/// Returns the bytes of transient memory, with memoryless textures where the device allocates them.
+fn allocated(plan: &Plan) -> u64 {
+    let memory = plan.memory();
+    memory.bytes + if plan.caps().memoryless_saves { 0 } else { memory.avoided_bytes }
 }
 
 /// Returns names and sizes in bytes of the memoryless textures.

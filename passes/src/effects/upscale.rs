@@ -4,11 +4,9 @@
 //! enlarges the picture: bilinearly, or along edges with sharpening (FSR 1.0). The percentage may change every frame;
 //! histories are read by texture coordinate and stay valid.
 
-mod dynamic;
 mod settings;
 pub mod sharpen;
 
-pub use dynamic::DynamicResolution;
 pub use settings::{Upscale, UpscaleFilter};
 
 use crate::effects::upscale::sharpen::Sharpen;

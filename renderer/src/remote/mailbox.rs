@@ -5,6 +5,10 @@ use super::server::MAX_VIEWERS;
 use framegraph::Plan;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError, TryLockError};
+use std::time::Duration;
+
+/// Interval in which a sender looks for plans and times.
+const LOOK: Duration = Duration::from_millis(25);
 
 /// Counts of a server since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -150,9 +154,10 @@ impl Mailbox {
         }
     }
 
-    /// Waits for a change of the outbox.
-    pub fn wait<'m>(&self, outbox: MutexGuard<'m, Outbox>) -> MutexGuard<'m, Outbox> {
-        self.changed.wait(outbox).unwrap_or_else(PoisonError::into_inner)
+    /// Waits for a texture or the end, at most [`LOOK`]. Plans and times wake no thread, because a woken thread can
+    /// preempt the frame.
+    pub fn wait(&self, outbox: MutexGuard<'_, Outbox>) {
+        drop(self.changed.wait_timeout(outbox, LOOK).unwrap_or_else(PoisonError::into_inner));
     }
 
     /// Wakes the threads that wait.
@@ -168,7 +173,6 @@ impl Mailbox {
         }
         drop(outbox);
         count(counter);
-        self.wake();
         true
     }
 

@@ -115,7 +115,7 @@ fn start_sender(
             let times = outbox.times.newer(&mut of_times);
             let texture = outbox.textures[viewer].newer(&mut of_texture);
             if plan.is_none() && times.is_none() && texture.is_none() {
-                drop(mailbox.wait(outbox));
+                mailbox.wait(outbox);
                 continue;
             }
             drop(outbox);

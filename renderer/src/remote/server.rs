@@ -20,7 +20,7 @@ pub const DEFAULT_ADDRESS: &str = "127.0.0.1:9870";
 /// Maximum number of attached viewers.
 pub const MAX_VIEWERS: usize = 4;
 /// Minimum time between two samples of times, and between two plans.
-const INTERVAL: Duration = Duration::from_millis(50);
+const INTERVAL: Duration = Duration::from_millis(100);
 
 /// Open connections by viewer.
 type Streams = Mutex<[Option<TcpStream>; MAX_VIEWERS]>;

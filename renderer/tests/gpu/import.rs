@@ -150,16 +150,8 @@ fn a_texture_behind_two_imports_is_refused_unless_they_may_alias() -> TestResult
     for (writes, aliases, refused) in [(true, false, true), (true, true, false), (false, false, false)] {
         let mut bench = Bench::new(&gpu, 8, 8);
         let (read, other) = image(&mut bench, writes, aliases)?;
-        let shared = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("shared"),
-            size: wgpu::Extent3d { width: 8, height: 8, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: TextureFormat::Rgba8Unorm,
-            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
+        let shared = texture(&gpu, 8, TextureFormat::Rgba8Unorm, usage);
         bench.imports.texture(read, &shared).texture(other, &shared);
         let done = bench.executor.execute(&bench.plan, &bench.frame, &(), &bench.imports).map(drop);
         let told = done.map_err(|error| error.to_string()).err().unwrap_or_default();

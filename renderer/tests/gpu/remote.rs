@@ -103,7 +103,7 @@ fn a_viewer_receives_plan_times_and_textures() -> TestResult {
 
     engine.until([8, 4], |server| server.counts().viewers == 0)?;
     let offered = engine.server.counts().times;
-    std::thread::sleep(Duration::from_millis(60));
+    std::thread::sleep(Duration::from_millis(120));
     engine.frame([8, 4])?;
     assert_eq!(engine.server.counts().times, offered, "nothing is offered after the viewer left");
     Ok(())
@@ -191,11 +191,11 @@ fn a_viewer_that_does_not_read_never_delays_a_frame() -> TestResult {
     let mut sent = engine.server.counts().sent;
     engine.until(size, |server| std::mem::replace(&mut sent, server.counts().sent) == sent)?;
     let begun = engine.server.counts();
-    engine.until(size, |server| server.counts().times >= begun.times + 20)?;
+    engine.until(size, |server| server.counts().times >= begun.times + 10)?;
     let counts = engine.server.counts();
     let replaced = counts.replaced - begun.replaced;
     assert!(counts.sent <= begun.sent + 2, "the sender is blocked: {counts:?}");
-    assert!(replaced >= 17, "old samples are replaced, and never queued: {counts:?}");
+    assert!(replaced >= 7, "old samples are replaced, and never queued: {counts:?}");
     // Another viewer is served meanwhile.
     let reading = engine.connect()?;
     let received = std::thread::spawn(move || reading.receive());

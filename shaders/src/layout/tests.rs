@@ -34,7 +34,7 @@ fn wgsl_structs() -> BTreeMap<String, StructLayout> {
         let effects = if pass.wgsl.contains("epilogue(") { effects.as_slice() } else { &[] };
         // Without INSTANCE_STREAM, objects are read from buffers.
         let without = Feature::all().filter(|feature| *feature != Feature::INSTANCE_STREAM).collect();
-        for features in [Feature::all().collect(), without] {
+        for features in [Feature::all().chain([Feature::STEREO]).collect(), without] {
             for found in resolve(&pass, &features, effects).unwrap().reflection.structs {
                 if let Some(before) = structs.insert(found.name.clone(), found.clone()) {
                     assert_eq!(before, found, "two passes disagree");

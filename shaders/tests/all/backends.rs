@@ -2,10 +2,11 @@
 
 use naga::back::{PipelineConstants, glsl, hlsl, msl, pipeline_constants, spv};
 use naga::proc::BoundsCheckPolicies;
-use naga::valid::{ModuleInfo, ValidationFlags, Validator};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
 use crate::variants::{self, Variant};
+use framegraph_shaders::{Feature, Features, resolve};
 
 struct Entry<'a> {
     module: &'a Module,
@@ -124,4 +125,30 @@ fn an_override_that_does_not_exist_is_an_error() {
     let mut failures = Vec::new();
     translate(&variants[0], &parsed(&variants[0]), &constants, &mut failures);
     assert!(!failures.is_empty(), "or the test above would not notice a misspelling");
+}
+
+/// The passes of stereo views are valid SPIR-V with multiview, and select an eye by the index of the view.
+#[test]
+fn stereo_variants_are_valid_with_multiview() -> Result<(), String> {
+    for name in ["prepass", "color"] {
+        let pass = variants::pass(name);
+        let features = Features::NONE.with(Feature::STEREO);
+        let shader = resolve(&pass, &features, &[]).map_err(|error| error.to_string())?;
+        assert!(shader.wgsl.contains("view_index"), "{name}");
+        let module = naga::front::wgsl::parse_str(&shader.wgsl).map_err(|error| error.to_string())?;
+        let capabilities = Capabilities::MULTIVIEW | Capabilities::MULTISAMPLED_SHADING;
+        let info = Validator::new(ValidationFlags::all(), capabilities).validate(&module);
+        let info = info.map_err(|error| error.emit_to_string(&shader.wgsl))?;
+        for own in module.entry_points.iter().filter(|own| ["vs_main", "vs_opaque", "fs_main"].contains(&&*own.name)) {
+            let (module, info) = pipeline_constants::process_overrides(
+                &module,
+                &info,
+                Some((own.stage, &own.name)),
+                &Default::default(),
+            )
+            .map_err(|error| error.to_string())?;
+            vulkan(&Entry { module: &module, info: &info, stage: own.stage, name: &own.name })?;
+        }
+    }
+    Ok(())
 }

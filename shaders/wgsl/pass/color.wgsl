@@ -9,8 +9,6 @@ import package::interface::epilogue::epilogue;
 @if(FOG)
 import package::interface::fog::in_fog;
 import package::interface::frame::frame;
-@if(STEREO)
-import package::interface::frame::eyes;
 import package::interface::material::{
     material, TRAIT_EMITS, TRAIT_NO_AREA, TRAIT_SHADOW_CATCHER, TRAIT_UNLIT, material_has,
     base_color, metallic_roughness, emission, specular_factors,
@@ -88,6 +86,8 @@ import package::shading::vertex::{
     SurfaceVertex, surface_vertex, face_sign, geometric_normal, smooth_normal, shading_normal,
     texture_uv, vertex_color,
 };
+@if(STEREO)
+import package::shading::vertex::toward_eye;
 @if(CLEAR_COAT && TEXTURED)
 import package::shading::vertex::mapped_normal;
 
@@ -100,8 +100,7 @@ override ALPHA_MODE: u32 = 0u;
 override SUN: bool = true;
 
 /// True if the material specifies its reflectance at grazing incidence, which then does not fade.
-/// This is a constant instead of an `@if` at its use, because all variants must have the same
-/// overrides.
+/// A constant instead of an `@if` at its use: all variants must have the same overrides.
 @if(SPECULAR)
 const F90_IS_GIVEN: bool = true;
 @else
@@ -184,9 +183,8 @@ fn shade(vertex: SurfaceVertex, geometric: vec3<f32>, side: f32, base: vec3<f32>
     let smooth_side = smooth_normal(vertex, geometric, side);
     var roughness = shaded_roughness(metal_rough.y, smooth_side);
     let normal = shading_normal(vertex, smooth_side, side);
-    @if(STEREO) let camera = eyes[vertex.eye].camera;
-    @else let camera = frame.camera;
-    let to_viewer = camera.xyz - camera.w * vertex.world;
+    @if(STEREO) let to_viewer = toward_eye(vertex);
+    @else let to_viewer = frame.camera.xyz - frame.camera.w * vertex.world;
     let view = normalize_or(to_viewer, normal);
     let nov = clamp_nov(real(dot(normal, view)));
     let color = to_real3(base);
@@ -335,9 +333,8 @@ fn seen_color(vertex: SurfaceVertex, front_facing: bool) -> vec4<f32> {
     if material_has(TRAIT_SHADOW_CATCHER) {
         seen *= caught;
     }
-    @if(FOG) seen = in_fog(
-        seen, normalize_or(vertex.world, vec3<f32>(0.0, 0.0, 1.0)), length(vertex.world),
-    );
+    @if(FOG) seen =
+        in_fog(seen, normalize_or(vertex.world, vec3<f32>(0.0, 0.0, 1.0)), length(vertex.world));
     return seen;
 }
 

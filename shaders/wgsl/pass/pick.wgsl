@@ -23,7 +23,8 @@ fn vs_opaque(
     instance: Instance,
     @location(0) position: vec3<f32>,
 ) -> OpaqueVertex {
-    return OpaqueVertex(clip_position(world_position(position, instance), instance), instance.number);
+    let world = world_position(position, instance);
+    return OpaqueVertex(clip_position(world, instance), instance.number);
 }
 
 @vertex

@@ -3,6 +3,8 @@
 // Without the feature TEXTURED there are no texture coordinates, and tangents exist only for
 // anisotropy. VERTEX_COLORS: the mesh has colors.
 
+@if(STEREO)
+import package::interface::frame::eyes;
 import package::interface::object::{
     Instance, world_position, clip_position, world_normal, world_tangent, handedness,
 };
@@ -64,6 +66,13 @@ fn surface_vertex(
     @if(STEREO) vertex.eye = instance.eye;
     @if(MATERIAL_TABLE) vertex.material = material_number(instance);
     return vertex;
+}
+
+/// Returns the vector toward the eye that is drawn: of any length, and in m for a perspective.
+@if(STEREO)
+fn toward_eye(vertex: SurfaceVertex) -> vec3<f32> {
+    let camera = eyes[vertex.eye].camera;
+    return camera.xyz - camera.w * vertex.world;
 }
 
 /// Returns both sets of texture coordinates, or zeros without textures.

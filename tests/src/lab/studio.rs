@@ -18,7 +18,7 @@ use framegraph_scene::environment::Sky;
 use framegraph_scene::{Light, Scene, progress};
 use framegraph_shader_mirrors::srgb::{linear_from_srgb_channel, srgb_from_linear_channel};
 use framegraph_wgpu::{Executor, ExecutorOptions, Frame, Gpu, Imports, read_texture};
-use glam::{DVec2, Vec3};
+use glam::{DQuat, DVec2, Vec3};
 use std::cell::RefCell;
 use std::time::Instant;
 
@@ -298,6 +298,39 @@ impl Ready {
         let rest = encoded(self.size_px, rest);
         let squares = frames.iter().flat_map(|frame| codes(frame, &rest)).map(|d| d * d);
         Ok(Some((squares.sum::<f64>() / (frames.len() * 3 * rest.linear.len()) as f64).sqrt()))
+    }
+
+    /// Moves the camera around the vertical axis through the scene's center, by an angle from its first position. The next
+    /// frame has motion vectors from the previous one.
+    ///
+    /// # Errors
+    /// The device fails.
+    pub fn turn(&mut self, gpu: &Gpu, angle_rad: f64) -> Outcome<()> {
+        let [width, height] = self.size_px.map(f64::from);
+        let (turn, center) = (DQuat::from_rotation_y(angle_rad), self.scene.bounds_above_ground().center());
+        self.moment.camera = self.scene.default_camera(width / height);
+        let camera = &mut self.moment.camera;
+        camera.eye = center + turn * (camera.eye - center);
+        camera.world_from_view = turn * camera.world_from_view;
+        let before = &self.world.views.get(ViewId::MAIN)?.view;
+        let view = CameraView::new(&self.scene, &self.world.lighting.image, &Background::Environment, &self.moment);
+        let mut view = view.after(before);
+        if let Some(taa) = self.settings.taa {
+            view.jitter(taa.jitter_px(self.drawn));
+        }
+        Ok(self.world.set_view(gpu, ViewId::MAIN, view)?)
+    }
+
+    /// Draws one frame of a sequence and returns its picture, after [`Ready::turn`].
+    ///
+    /// # Errors
+    /// The device fails.
+    pub fn next(&mut self, gpu: &Gpu) -> Outcome<Picture> {
+        self.world.frame_index = FrameIndex(self.drawn);
+        self.drawn += 1;
+        self.executor.execute(&self.plan, &self.frame, &self.world, &Imports::new())?;
+        gpu.wait()?;
+        self.read(gpu)
     }
 
     /// Returns the feature culling of the scene and settings.

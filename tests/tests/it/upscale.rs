@@ -3,7 +3,7 @@
 use crate::stage::{self, Shot, gpu, picture};
 use framegraph::{Caps, Counts, Extent, Options, Target};
 use framegraph_passes::effects::upscale::sharpen::Sharpen;
-use framegraph_passes::effects::upscale::{DynamicResolution, Enlarge, UpscaleFilter};
+use framegraph_passes::effects::upscale::{Enlarge, UpscaleFilter};
 use framegraph_passes::program::Programs;
 use framegraph_passes::{Settings, Upscale};
 use framegraph_shader_mirrors::sharpen::sharpened;
@@ -128,37 +128,4 @@ fn a_smaller_frame_is_shown_as_large() -> TestResult {
         assert!((mean(&found) - mean(&whole)).abs() < 1.0, "{filter:?}: {} and {}", mean(&found), mean(&whole));
     }
     Ok(())
-}
-
-/// If a part of the frame time scales with the area, dynamic resolution settles at the target time. It stops at its
-/// limits if the target cannot be reached, and ignores a single late frame.
-#[test]
-fn the_size_follows_the_times() {
-    let own = DynamicResolution { target_ms: 12.0, ..DynamicResolution::DEFAULT };
-    let settled = |fixed_ms: f64, full_ms: f64| {
-        let (mut percent, mut times) = (100.0, Vec::new());
-        let mut shares = Vec::new();
-        for _ in 0..240 {
-            times.push(fixed_ms + full_ms * percent * percent / 1e4);
-            percent = own.next_percent(percent, &times);
-            shares.push(percent);
-        }
-        (shares, times)
-    };
-    let (shares, times) = settled(2.0, 20.0);
-    assert!((times[239] - 12.0).abs() < 0.05, "{} ms", times[239]);
-    let tail = &shares[200..];
-    let spread = tail.iter().copied().fold(0.0, f64::max) - tail.iter().copied().fold(100.0, f64::min);
-    assert!(spread < 0.5, "it trembles by {spread} percent");
-    assert_eq!(settled(2.0, 5.0).0[239], 100.0, "there is time for all");
-    assert_eq!(settled(13.0, 20.0).0[239], 50.0, "nothing is enough");
-    let quiet = own.next_percent(80.0, &[12.0; 15]);
-    assert_eq!(quiet, 80.0);
-    let mut spike = [12.0; 15];
-    spike[14] = 500.0;
-    assert_eq!(own.next_percent(80.0, &spike), 80.0);
-    for times in [&[][..], &[f64::NAN, f64::INFINITY, -1.0]] {
-        assert_eq!(own.next_percent(80.0, times), 80.0, "{times:?}");
-    }
-    assert_eq!(own.next_percent(f64::NAN, &[12.0]), 100.0);
 }

@@ -133,7 +133,9 @@ fn panels_show_plan_times_textures_and_what_if_of_an_engine() {
     assert_eq!(names(&viewer), ["clear sky", "filter 0"]);
     let plan = viewer.session.plan.clone().expect("a plan");
     assert!(plan.plan.is_some() && plan.declared_at[0].contains("attach.rs"), "{:?}", plan.declared_at);
-    until(&ctx, &mut viewer, |viewer| viewer.session.trace.as_ref().is_some_and(|trace| trace.frames.len() > 2));
+    until(&ctx, &mut viewer, |viewer| {
+        viewer.session.trace.as_ref().is_some_and(|trace| trace.steps[0].cpu_ms.len() > 1)
+    });
     let trace = viewer.session.trace.clone().expect("times");
     assert_eq!((trace.mismatch(&plan), trace.steps.len()), (None, 2));
     assert!(trace.steps.iter().all(|step| step.cpu_ms.len() > 1), "{trace:?}");

@@ -24,6 +24,8 @@ fn main() -> std::process::ExitCode {
                 memory.unshared_bytes, memory.allocated_bytes, memory.lazy_bytes, memory.lazy_committed_bytes
             ));
             line(format_args!("  {} loads, {} stores", report.counts.unresolves, report.counts.resolves));
+            let [[one, two], [modeled_one, modeled_two]] = report.times_us;
+            line(format_args!("  time: {one:.0} µs on one queue, {two:.0} µs on two; simulated {modeled_one:.0} and {modeled_two:.0} µs"));
             line(format_args!("  largest difference from the reference: {} of 255", report.difference));
             if report.difference > 1 || report.counts != report.planned {
                 Err("the picture is wrong".into())

@@ -6,10 +6,13 @@ use framegraph::{
 use framegraph_queues::{QueueId, schedule};
 use framegraph_vulkan::ash::vk;
 use framegraph_vulkan::testing::{Bound, DepthTest, Dispatch, Draw, Kit, Part, TestDevice};
-use framegraph_vulkan::{Cx, Executor, Imports, MemoryReport, RecordError};
+use framegraph_vulkan::{Cx, Executor, ExecutorOptions, Gpu, Imports, MemoryReport, RecordError};
 
 /// Width and height in texels.
 pub const SIZE: [u32; 2] = [64, 48];
+
+/// Costs for which ambient occlusion moves to the second queue.
+const COSTS_US: [f64; 4] = [50.0, 200.0, 200.0, 300.0];
 
 /// Cost of a frame, and the difference of its picture from the reference.
 pub struct Report {
@@ -24,7 +27,10 @@ pub struct Report {
     /// Largest difference of a channel, in 8-bit steps.
     pub difference: u8,
     /// The picture, four bytes per texel.
+    #[allow(dead_code, reason = "only tests compare it with other pictures")]
     pub pixels: Vec<u8>,
+    /// Median time of a frame on one queue and on two, and the simulator's figures for measured costs; in microseconds.
+    pub times_us: [[f64; 2]; 2],
 }
 
 /// Handles of the frame.
@@ -146,8 +152,7 @@ pub fn run(device: &TestDevice, samples: u8) -> Result<Report, Box<dyn std::erro
     caps.memoryless = true;
     let options = Options { alias: Alias::Off, ..Options::for_frame(SIZE[0], SIZE[1]) };
     gpu.compile(&graph, &caps, &options, &mut Scratch::new(), &mut plan)?;
-    let costs_us = [50.0, 200.0, 200.0, 300.0];
-    let found = schedule(&plan, &gpu.queue_layout(), &costs_us)?;
+    let found = schedule(&plan, &gpu.queue_layout(), &COSTS_US)?;
     let memory = gpu.share_memory(&plan, &found)?;
     let (mut executor, mut kit) = (Executor::new(gpu)?, Kit::new(gpu));
     executor.prepare(&plan, Some((&found, Some(&memory))))?;
@@ -168,6 +173,7 @@ pub fn run(device: &TestDevice, samples: u8) -> Result<Report, Box<dyn std::erro
     if pixels.len() != expected.len() {
         return Err(format!("the picture has {} bytes instead of {}", pixels.len(), expected.len()).into());
     }
+    let times_us = times(gpu, &plan, (&frame, samples))?;
     let differences = pixels.iter().zip(&expected).map(|(a, b)| a.abs_diff(*b));
     Ok(Report {
         counts: executor.executed(),
@@ -177,7 +183,42 @@ pub fn run(device: &TestDevice, samples: u8) -> Result<Report, Box<dyn std::erro
         memory: executor.memory(),
         difference: differences.max().unwrap_or(u8::MAX),
         pixels,
+        times_us,
     })
+}
+
+/// Returns the median time of frames on one queue and on two, whose order alternates; and the simulator's times, for
+/// the medians of the steps. In microseconds.
+fn times(gpu: &Gpu, plan: &Plan, (frame, samples): (&Frame, u8)) -> Result<[[f64; 2]; 2], Box<dyn std::error::Error>> {
+    const FRAMES: usize = 15;
+    let options = ExecutorOptions { timing: true, ..ExecutorOptions::default() };
+    let steps = plan.steps().len();
+    let found = schedule(plan, &gpu.queue_layout(), &COSTS_US)?;
+    let (mut frames, mut of_steps) = ([Vec::new(), Vec::new()], vec![Vec::new(); steps]);
+    let mut executors = [Executor::with(gpu, options)?, Executor::with(gpu, options)?];
+    let mut kits = [Kit::new(gpu), Kit::new(gpu)];
+    executors[0].prepare(plan, None)?;
+    executors[1].prepare(plan, Some((&found, None)))?;
+    for _ in 0..FRAMES {
+        for queues in 0..2 {
+            let start = std::time::Instant::now();
+            executors[queues].execute(plan, Imports::new(), |cx| record(&mut kits[queues], frame, samples, cx))?;
+            executors[queues].wait()?;
+            frames[queues].push(start.elapsed().as_secs_f64() * 1e6);
+        }
+        for (all, time) in of_steps.iter_mut().zip(executors[0].step_times_us()) {
+            all.extend(*time);
+        }
+    }
+    let costs: Vec<f64> = of_steps.into_iter().map(median).collect();
+    let planned = schedule(plan, &gpu.queue_layout(), &costs)?;
+    Ok([frames.map(median), [planned.alone_us, planned.total_us]])
+}
+
+/// Returns the median; 0 without values.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Draws the picture on the CPU: every sample is shaded, graded and averaged.

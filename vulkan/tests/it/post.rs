@@ -14,6 +14,7 @@ fn post_processing_is_a_subpass_and_its_picture_is_the_reference() -> TestResult
         assert!(messages.is_empty(), "{samples}: {}", messages[0]);
         assert!(report.difference <= 1, "{samples}: {}", report.difference);
         assert_eq!(report.counts, report.planned, "{samples}");
+        assert!(report.times_us.iter().flatten().all(|time| *time > 0.0), "{samples}: {:?}", report.times_us);
         assert_eq!((report.counts.passes, report.counts.steps, report.subpasses), (5, 4, 2), "{samples}");
         assert_eq!(report.moved, 1, "ambient occlusion runs on the second queue");
         let memory = report.memory;

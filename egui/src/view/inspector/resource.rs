@@ -34,6 +34,9 @@ pub(super) fn sections(plan: &PlanData, index: usize) -> Vec<Section> {
     if let Some(exit) = &resource.exit {
         head.say(format!("exit: {exit}"));
     }
+    if !resource.may_alias.is_empty() {
+        head.say(format!("may alias {}", resource.may_alias.join(", ")));
+    }
     let mut place = Section::new("memory");
     place.say(match (resource.placement.as_str(), resource.offset, resource.slot) {
         ("slot", _, Some(slot)) => {

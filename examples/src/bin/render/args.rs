@@ -74,6 +74,12 @@ pub struct Args {
     pub debug: Debugging,
     /// Time or error limit of the frame.
     pub budget: Budget,
+    /// Folder for the error by source.
+    pub explain_error: Option<PathBuf>,
+    /// Options of the frame to compare with.
+    pub compare_with: Option<String>,
+    /// All words of the command line, without the program name.
+    pub words: Vec<OsString>,
     /// Set for the candidate frames of a budget search, which print no messages about the scene.
     pub trial: bool,
 }
@@ -108,7 +114,8 @@ pub enum Command {
 /// # Errors
 /// One line that names the option and the expected value.
 pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String> {
-    let given = match program::cli::parse(help::command(), args)? {
+    let words: Vec<OsString> = args.into_iter().collect();
+    let given = match program::cli::parse(help::command(), words.clone())? {
         Parsed::Help(text) => return Ok(Command::Help(text)),
         Parsed::Given(given) => given,
     };
@@ -141,6 +148,9 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
         allow_outside: false,
         debug: Debugging::default(),
         budget: Budget::default(),
+        explain_error: None,
+        compare_with: None,
+        words,
         trial: false,
     };
     if let Some(frame) = frame {
@@ -176,6 +186,8 @@ pub fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, String
             "linear-out" => found.linear_out = Some(with_ending(item.raw().into(), "--linear-out", &["exr"])?),
             "memory" => found.memory_bytes = Some(memory(&item)?),
             "variant" => found.variant = Some(item.text()?),
+            "explain-error" => found.explain_error = Some(item.raw().into()),
+            "compare-with" => found.compare_with = Some(item.text()?),
             "allow-outside" => found.allow_outside = true,
             "plan" => plan = Some(item.raw().into()),
             name => {

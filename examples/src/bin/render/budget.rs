@@ -5,11 +5,14 @@ use crate::run::{Failure, Frames, Prepared, WARM_UP, device, input, prepare, ren
 use crate::table::aligned;
 use framegraph::{Plan, Scratch, compile};
 use framegraph_passes::FrameSettings;
+use framegraph_passes::effects::exposure::Measurement;
 use framegraph_passes::feature_culling::{Decision, Facts};
-use framegraph_passes::quality::{Bound, Choices, GROUPS, Measured, Offers, Settled, Trial, reference, settle};
+use framegraph_passes::quality::{
+    Bound, Choices, GROUPS, Measured, Offers, Settled, Trial, guaranteed, reference, settle,
+};
 use framegraph_wgpu::read_texture;
 use program::clap::Arg;
-use program::cli::{Item, option};
+use program::cli::{Item, flag, option};
 use program::input::{MAX_TEXT_BYTES, text};
 use program::outputs::Outputs;
 use serde::Deserialize;
@@ -32,6 +35,11 @@ pub fn options() -> Vec<Arg> {
             "Choose the fastest frame whose root-mean-square error against the reference frame is at most X 8-bit \
              steps",
         ),
+        flag(
+            "guaranteed",
+            "With --max-error, choose only among options whose error is proved to be small in this scene, and print the \
+             proofs. The limit then holds for every channel of every pixel",
+        ),
         option(
             "record",
             "FILE.json",
@@ -50,6 +58,8 @@ const OWN: &str = include_str!("../../../../docs/measurements/accuracy.json");
 pub struct Budget {
     /// Time or error limit; `None` disables the search.
     pub bound: Option<Bound>,
+    /// Accepts only proved errors.
+    pub guaranteed: bool,
     /// Record of measurements; `None` for the record of the repository.
     pub record: Option<PathBuf>,
 }
@@ -64,6 +74,7 @@ impl Budget {
         match item.name() {
             "budget-ms" => self.bound = Some(Bound::Ms(item.parse("a number above 0", positive)?)),
             "max-error" => self.bound = Some(Bound::Codes(item.parse("a number above 0", positive)?)),
+            "guaranteed" => self.guaranteed = true,
             "record" => self.record = Some(crate::name::with_ending(item.raw().into(), "--record", &["json"])?),
             _ => return Ok(false),
         }
@@ -101,8 +112,8 @@ pub fn record(file: Option<&Path>) -> Result<(Measured, String), String> {
 }
 
 /// Result of a candidate frame: its picture, its time in milliseconds, and the dropped effects.
-struct Candidate {
-    picture: Vec<u8>,
+pub struct Candidate {
+    pub picture: Vec<u8>,
     ms: f64,
     facts: Facts,
 }
@@ -129,6 +140,9 @@ pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
         choices.iter().zip(set).for_each(|((_, options), index)| (options[*index].apply)(&mut frame));
         frame
     };
+    if let (true, Bound::Codes(steps)) = (args.budget.guaranteed, bound) {
+        return prove(args, &measured, &choices, steps);
+    }
     let fastest = draw_candidate(&args.with(&frame_of(&vec![0; choices.len()])))?;
     let mut offers = measured.offers(&choices, fastest.ms.min(truth.ms), truth.ms);
     let settled = settle(&mut offers, bound, |set| {
@@ -140,8 +154,38 @@ pub fn choose(args: &Args, bound: Bound) -> Result<Args, Failure> {
     Ok(args.with(&frame_of(&settled.chosen.options)))
 }
 
+/// Chooses the fastest set whose error is proved to be at most `max_steps`, and prints its proofs.
+fn prove(args: &Args, measured: &Measured, choices: &Choices, max_steps: f64) -> Result<Args, Failure> {
+    let finest = reference(&args.frame());
+    let mut prepared = prepare(&args.with(&finest), &mut Outputs::default())?;
+    let offers = measured.offers(choices, measured.fastest_ms, measured.reference_ms);
+    let Prepared { culling, loaded, world, seen, asked, .. } = &mut prepared;
+    let found = guaranteed(
+        &FrameSettings { settings: *asked, ..finest },
+        choices,
+        &offers,
+        max_steps,
+        &mut |settings, kept| {
+            culling.keeping(kept).facts(loaded, &world.lighting.image, seen, settings, Measurement::Off)
+        },
+    );
+    let mut rows = vec![["group", "chosen", "proof", "steps"].map(String::from)];
+    for (group, option, bound) in &found.bounds {
+        rows.push([(*group).into(), (*option).into(), bound.proof.clone(), format!("{:.2}", bound.steps)]);
+    }
+    program::print(aligned(&rows, 3));
+    program::line(format_args!(
+        "proved: every channel of every pixel is within {:.2} 8-bit steps of the finest frame, with rounding; limit: \
+         {max_steps}; groups without a row keep the finest option",
+        found.steps
+    ));
+    let mut frame = finest;
+    choices.iter().zip(&found.options).for_each(|((_, options), index)| (options[*index].apply)(&mut frame));
+    Ok(args.with(&frame))
+}
+
 /// Renders a frame and returns its median time.
-fn draw_candidate(args: &Args) -> Result<Candidate, Failure> {
+pub fn draw_candidate(args: &Args) -> Result<Candidate, Failure> {
     let mut prepared = prepare(args, &mut Outputs::default())?;
     let (options, execute) = prepared.options(args);
     let mut plan = Plan::new();
@@ -162,10 +206,15 @@ fn draw_candidate(args: &Args) -> Result<Candidate, Failure> {
 }
 
 /// Mean squared difference of the color channels, in squared 8-bit steps.
-fn squares(ours: &[u8], truth: &[u8]) -> f64 {
+pub fn squares(ours: &[u8], truth: &[u8]) -> f64 {
     let pixels = ours.chunks_exact(4).zip(truth.chunks_exact(4));
     let sum: f64 = pixels.flat_map(|(a, b)| (0..3).map(|c| (f64::from(a[c]) - f64::from(b[c])).powi(2))).sum();
     sum / (0.75 * ours.len() as f64)
+}
+
+/// Root mean square difference of the color channels, in 8-bit steps.
+pub fn rms(ours: &[u8], truth: &[u8]) -> f64 {
+    squares(ours, truth).sqrt()
 }
 
 /// Formats a row for each group: the chosen option, its cost over the fastest option, and its error alone.
@@ -217,13 +266,13 @@ fn verdict(bound: Bound, Settled { chosen, trial, holds }: &Settled, adapter: &s
 
 impl Args {
     /// Returns the frame settings of the command line.
-    fn frame(&self) -> FrameSettings {
+    pub fn frame(&self) -> FrameSettings {
         let settings = framegraph_passes::Settings { shadows: self.shadows.asked(), ..self.frame.settings };
         FrameSettings { settings, ..self.frame }
     }
 
     /// Returns the command line with the settings of `frame` that the search chooses.
-    fn with(&self, frame: &FrameSettings) -> Self {
+    pub fn with(&self, frame: &FrameSettings) -> Self {
         let mut args = self.clone();
         let (own, chosen) = (&mut args.frame.settings, frame.settings);
         (own.samples, own.fxaa, own.shading) = (chosen.samples, chosen.fxaa, chosen.shading);

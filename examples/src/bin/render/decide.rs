@@ -210,6 +210,11 @@ impl FeatureCulling {
         self.survey = SceneSummary::new(scene);
     }
 
+    /// Returns feature culling without history that always keeps these effects.
+    pub fn keeping(&self, kept: EffectSet) -> Self {
+        Self { survey: self.survey.clone(), memory: FactMemory::default(), forced: kept, off: self.off }
+    }
+
     /// Returns the decisions on all effects of a view; none if effects are forced.
     pub fn facts(
         &mut self,

@@ -2,7 +2,6 @@
 //! levels of detail, transparency and visible layers.
 
 use crate::parse::{field, number};
-use framegraph_passes::effects::upscale::DynamicResolution;
 use framegraph_passes::frame::tables::{Section, sections};
 use framegraph_passes::{FrameSettings, Upscale};
 use program::clap::Arg;
@@ -83,8 +82,8 @@ const METHODS: [(&str, &str); 4] = [
 pub struct Effects {
     /// Picture of lens dirt.
     pub dirt: Option<PathBuf>,
-    /// Dynamic resolution.
-    pub dynamic: Option<DynamicResolution>,
+    /// Dynamic resolution: frame time in ms, and the minimum scale in percent of width and height.
+    pub dynamic: Option<[f64; 2]>,
 }
 
 /// Returns the upscaling for a frame rendered at `percent` of the sides; `None` at 100 %.
@@ -130,9 +129,8 @@ fn mask(text: &str) -> Option<u8> {
 }
 
 /// Parses a frame time in milliseconds, and an optional minimum scale in percent after a colon.
-fn dynamic(text: &str) -> Option<DynamicResolution> {
+fn dynamic(text: &str) -> Option<[f64; 2]> {
     let (target, min) = text.split_once(':').unwrap_or((text, "50"));
     let of = |part: &str, max: f64| part.parse::<f64>().ok().filter(|x| *x > 0.0 && *x <= max);
-    let (target_ms, least_percent) = (of(target, 1e6)?, of(min, 100.0).filter(|min| *min >= 25.0)?);
-    Some(DynamicResolution { target_ms, least_percent, ..DynamicResolution::DEFAULT })
+    Some([of(target, 1e6)?, of(min, 100.0).filter(|min| *min >= 25.0)?])
 }

@@ -67,12 +67,17 @@ const OFF: [(&str, &str); 11] = [
 /// Conflicts: an option, the options it makes useless, and the reason.
 ///
 /// A value after an option matches one of its comma-separated parts, up to a colon.
-const CONFLICTS: [(&str, &[&str], &str); 33] = [
+const CONFLICTS: [(&str, &[&str], &str); 38] = [
     ("budget-ms", &["max-error"], "choose one limit"),
     ("budget-ms", &SEARCHED, "the search chooses it; --preset and --settings set the base frame"),
     ("max-error", &SEARCHED, "the search chooses it; --preset and --settings set the base frame"),
     ("budget-ms", &SEVERAL_FRAMES, "the search is for a single frame"),
     ("max-error", &SEVERAL_FRAMES, "the search is for a single frame"),
+    ("explain-error", &["compare-with", "budget-ms", "max-error"], "it draws its own frames"),
+    ("explain-error", &SEVERAL_FRAMES, "it is for a single frame"),
+    ("explain-error", &SINGLE_FRAME, "it writes only heat maps"),
+    ("compare-with", &SEVERAL_FRAMES, "it is for a single frame"),
+    ("compare-with", &SINGLE_FRAME, "it writes no files"),
     ("turntable", &SINGLE_FRAME, "it writes its own pictures"),
     ("sequence", &SINGLE_FRAME, "it writes its own pictures"),
     (
@@ -120,7 +125,8 @@ const CONFLICTS: [(&str, &[&str], &str); 33] = [
 ];
 
 /// Options that require one of several others.
-const REQUIRES: [(&str, &[&str]); 8] = [
+const REQUIRES: [(&str, &[&str]); 9] = [
+    ("guaranteed", &["max-error"]),
     ("record", &["budget-ms", "max-error", "preset"]),
     ("animation", &["time"]),
     ("dynamic-resolution", &["turntable", "sequence"]),

@@ -1,6 +1,6 @@
 //! Options of `render`, and the lists of keys that `--ao help` and others print.
 
-use crate::{animation, budget, debug, decide, effects, grade, light, shadows};
+use crate::{accuracy, animation, budget, debug, decide, effects, grade, light, shadows};
 use framegraph_passes::frame::tables::sections;
 use program::clap::{Arg, Command};
 use program::cli::{argument, flag, option};
@@ -20,6 +20,7 @@ pub fn command() -> Command {
             .chain(effects::options())
             .chain(decide::options())
             .chain(budget::options())
+            .chain(accuracy::options())
             .chain(debug::options())
             .chain(execution())
             .chain(outputs()),

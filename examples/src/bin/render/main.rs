@@ -1,5 +1,6 @@
 //! Renders a scene with the compiled render graph, without a window.
 
+mod accuracy;
 mod animation;
 mod args;
 mod budget;
@@ -41,9 +42,11 @@ fn main() -> ExitCode {
         Err(message) => return fail(2, &message),
     };
     interrupt::watch();
-    let done = match (args.compare_post, args.debug.bisect) {
-        (true, _) => compare::compare_post(&args),
-        (_, true) => debug::run_bisect(&args),
+    let done = match (&args.explain_error, &args.compare_with) {
+        (Some(folder), _) => accuracy::explain(&args, folder),
+        (_, Some(other)) => accuracy::compare(&args, other),
+        _ if args.compare_post => compare::compare_post(&args),
+        _ if args.debug.bisect => debug::run_bisect(&args),
         _ => run::run(&args),
     };
     match (done, interrupt::check()) {

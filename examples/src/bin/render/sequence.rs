@@ -8,8 +8,8 @@ use crate::load;
 use crate::run::{Failure, Prepared, device, executed, input};
 use framegraph::{Plan, Scratch};
 use framegraph_passes::effects::exposure::Measuring;
-use framegraph_passes::effects::upscale::DynamicResolution;
 use framegraph_passes::gpu_scene::view::ViewSettings;
+use framegraph_passes::quality::{Controller, percents};
 use framegraph_passes::{CameraView, FrameIndex, PreparedScene, Settings, ViewId};
 use framegraph_scene::Scene;
 use framegraph_scene::picture::encode_png;
@@ -44,7 +44,11 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
     let center = prepared.loaded.scene.bounds_above_ground().center();
     let mut placed = placed_on(&executor, &prepared.loaded.scene);
     let (mut plans, mut planned, mut measuring) = (0_u32, None, Measuring::new());
-    let (mut percents, mut times_ms) = (Vec::new(), Vec::new());
+    let (mut drawn_at, mut times_ms) = (Vec::new(), Vec::new());
+    let mut dynamic = args.effects.dynamic.map(|[target_ms, min]| {
+        let scales = percents(min);
+        (Controller::new(target_ms, scales.iter().map(|percent| percent * percent)), scales)
+    });
     for (path, index) in files(sequence).zip(0..) {
         let plays = args.animation.plays() && !sequence.turns && index > 0;
         if plays {
@@ -58,13 +62,13 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         }
         let turned = if sequence.turns { f64::from(index) / f64::from(sequence.frames) * TAU } else { 0.0 };
         let mut seen = around(&prepared.seen, center, turned);
-        if let Some(dynamic) = &args.effects.dynamic {
-            let next = dynamic.next_percent(percents.last().copied().unwrap_or(dynamic.most_percent), &times_ms);
+        if let Some((controller, scales)) = &dynamic {
+            let next = scales[controller.level()];
             let asked = Settings { upscale: enlarging(args.frame.settings.upscale, next), ..prepared.asked };
             seen.size_px = asked.drawn_px(args.size_px);
             // A smaller picture has fewer mip levels.
             prepared.asked = asked.for_scene(&prepared.loaded.scene, seen.size_px);
-            percents.push(next);
+            drawn_at.push(next);
         }
         let light = &prepared.world.lighting.image;
         let measured = measuring.known(&prepared.gpu).map_err(device)?;
@@ -95,9 +99,10 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         plans += u32::from(planned.replace(settings) != Some(settings));
         let begun = Instant::now();
         executor.execute(&plan, &frame, world, &imports).map_err(executed)?;
-        if args.effects.dynamic.is_some() {
+        if let Some((controller, _)) = &mut dynamic {
             gpu.wait().map_err(device)?;
             times_ms.push(begun.elapsed().as_secs_f64() * 1e3);
+            controller.report(controller.level(), times_ms[times_ms.len() - 1]);
         }
         measuring.begin(gpu, (&executor, &plan), io.measured, stand).map_err(device)?;
         let texture = executor.texture(&plan, io.output).ok_or_else(|| device("the frame has no picture"))?;
@@ -107,8 +112,8 @@ pub fn render(args: &Args, prepared: &mut Prepared, sequence: &Sequence, outputs
         interrupt::check().map_err(device)?;
     }
     shown.clear();
-    if let Some(dynamic) = &args.effects.dynamic {
-        program::line(held(dynamic, &percents, times_ms));
+    if let Some([target_ms, _]) = args.effects.dynamic {
+        program::line(held(target_ms, &drawn_at, times_ms));
     }
     program::line(format_args!("{} pictures with {plans} different frame settings", sequence.frames));
     Ok(())
@@ -122,15 +127,14 @@ fn placed_on(executor: &Executor, scene: &Scene) -> PreparedScene {
 }
 
 /// Describes the range of scales, and the frame time against its target.
-fn held(dynamic: &DynamicResolution, percents: &[f64], mut times_ms: Vec<f64>) -> String {
+fn held(target_ms: f64, percents: &[f64], mut times_ms: Vec<f64>) -> String {
     times_ms.sort_by(f64::total_cmp);
     let median = times_ms.get(times_ms.len() / 2).copied().unwrap_or(0.0);
     let (min, max) = percents.iter().fold((100.0_f64, 0.0_f64), |(min, max), p| (min.min(*p), max.max(*p)));
     let last = percents.last().copied().unwrap_or(100.0);
     format!(
         "rendered at {min:.0} to {max:.0} % of the sides, the last at {last:.0} %; median frame time {median:.1} ms, \
-         target {:.1} ms",
-        dynamic.target_ms
+         target {target_ms:.1} ms"
     )
 }
 

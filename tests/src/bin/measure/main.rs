@@ -2,6 +2,8 @@
 //!
 //! Exit codes: 0 success, 1 a check or its negative control failed, 2 wrong arguments or an error.
 
+mod bounds;
+mod controller;
 mod facts;
 mod grading;
 mod hard_cases;
@@ -9,10 +11,12 @@ mod ibl_errors;
 mod lights;
 mod memory;
 mod occlusion;
+mod prediction;
 mod reflections;
 mod shading_errors;
 mod soak;
 mod taa;
+mod temporal;
 
 use framegraph_wgpu::{AdapterRequest, Gpu};
 use std::error::Error;
@@ -24,7 +28,9 @@ type Outcome = Result<bool, Box<dyn Error>>;
 /// A subcommand: its name, a summary, and its function of the remaining arguments.
 type Subcommand = (&'static str, &'static str, fn(&[&str]) -> Outcome);
 
-const SUBCOMMANDS: [Subcommand; 11] = [
+const SUBCOMMANDS: [Subcommand; 15] = [
+    ("bounds", "adversarial search for scenes that break a proved bound of an option", bounds::run),
+    ("controller", "traces of the frame-time controller, simulated and on the default adapter", controller::run),
     ("facts", "effects that feature culling drops from six scenes under four presets, and the time saved", facts::run),
     ("grading", "error of color grading tables against the exact functions", grading::run),
     (
@@ -36,10 +42,12 @@ const SUBCOMMANDS: [Subcommand; 11] = [
     ("lights", "cost of many lights with froxels and with a loop over all lights, on the default adapter", lights::run),
     ("memory", "bytes that the device allocates for the standard frame under each aliasing mode", memory::run),
     ("occlusion", "error and cost of ambient occlusion on the default adapter", occlusion::run),
+    ("prediction", "times and errors of options, predicted on scenes that were not measured", prediction::run),
     ("reflections", "accuracy of screen-space reflections on the default adapter", reflections::run),
     ("shading-errors", "error of half floats in the shading library on the default adapter", shading_errors::run),
     ("soak", "long-running test of the standard frame with changing window size, effects and scene", soak::run),
     ("taa", "error and ghosting of temporal anti-aliasing on the default adapter", taa::run),
+    ("temporal", "flicker, ghosting and popping of options while the camera moves", temporal::run),
 ];
 
 fn main() -> ExitCode {
