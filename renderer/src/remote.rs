@@ -52,8 +52,8 @@ mod wire;
 
 pub use connection::Connection;
 pub use error::RemoteError;
-pub use mailbox::RemoteCounts;
+pub use mailbox::{MAX_VIEWERS, RemoteCounts};
 pub use message::{FrameSample, FromEngine, FromViewer, RemotePlan, RemoteTexture, StepSample, TextureRequest};
-pub use server::{DEFAULT_ADDRESS, MAX_VIEWERS, Server};
+pub use server::{DEFAULT_ADDRESS, Server};
 pub use textures::TEXTURE_INTERVAL;
 pub use wire::{MAGIC, MAX_ANSWER_BYTES, MAX_REQUEST_BYTES, PATIENCE, VERSION};

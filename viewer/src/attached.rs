@@ -252,7 +252,7 @@ fn follow(address: &str, news: &SyncSender<News>, wake: &dyn Fn()) -> String {
         wake();
         next = loop {
             match own.receive() {
-                Ok(FromEngine::Plan(plan)) => match running(&engine, plan) {
+                Ok(FromEngine::Plan(plan)) => match running(&engine, *plan) {
                     Ok(running) => break News::Plan(Box::new(running)),
                     Err(error) => {
                         own.close();

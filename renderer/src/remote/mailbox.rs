@@ -1,12 +1,13 @@
 //! Data that the frame and the threads of the viewers exchange: one slot of each kind, the newest wins.
 
 use super::message::{FrameSample, RemotePlan, RemoteTexture, TextureRequest};
-use super::server::MAX_VIEWERS;
 use framegraph::Plan;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError, TryLockError};
 use std::time::Duration;
 
+/// Maximum number of attached viewers.
+pub const MAX_VIEWERS: usize = 4;
 /// Interval in which a sender looks for plans and times.
 const LOOK: Duration = Duration::from_millis(25);
 

@@ -17,7 +17,7 @@ pub enum FromEngine {
         reason: String,
     },
     /// The running plan, after each change.
-    Plan(RemotePlan),
+    Plan(Box<RemotePlan>),
     /// Times of a frame.
     Times(FrameSample),
     /// Answer to a [`TextureRequest`].

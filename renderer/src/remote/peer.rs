@@ -119,7 +119,7 @@ fn start_sender(
                 continue;
             }
             drop(outbox);
-            let plan = plan.map(|plan| FromEngine::Plan(plan.message(&engine).clone()));
+            let plan = plan.map(|plan| FromEngine::Plan(Box::new(plan.message(&engine).clone())));
             let times = times.map(|times| FromEngine::Times((*times).clone()));
             let texture = texture.map(|texture| FromEngine::Texture((*texture).clone()));
             for message in [plan, times, texture].into_iter().flatten() {

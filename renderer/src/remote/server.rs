@@ -1,7 +1,7 @@
 //! The server: accepts viewers, and takes data from the frame without waiting.
 
 use super::error::RemoteError;
-use super::mailbox::{Mailbox, OfferedPlan, RemoteCounts};
+use super::mailbox::{MAX_VIEWERS, Mailbox, OfferedPlan, RemoteCounts};
 use super::message::{FrameSample, StepSample};
 use super::peer;
 use super::textures::Textures;
@@ -17,8 +17,6 @@ use std::time::{Duration, Instant};
 
 /// Address that engines and viewers use without another one. Loopback: other machines cannot connect.
 pub const DEFAULT_ADDRESS: &str = "127.0.0.1:9870";
-/// Maximum number of attached viewers.
-pub const MAX_VIEWERS: usize = 4;
 /// Minimum time between two samples of times, and between two plans.
 const INTERVAL: Duration = Duration::from_millis(100);
 

@@ -152,14 +152,14 @@ mod tests {
 
     fn plan() -> FromEngine {
         let text = |text: &str| text.to_owned();
-        FromEngine::Plan(RemotePlan {
+        FromEngine::Plan(Box::new(RemotePlan {
             compilation: 3,
             json: text("{}"),
             graph: text("()"),
             caps: Caps::wgpu(),
             options: Options::default(),
             declared_at: vec![text("src/main.rs:1:2")],
-        })
+        }))
     }
 
     #[test]
