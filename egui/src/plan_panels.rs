@@ -55,7 +55,7 @@ pub struct Preview {
 ///     panels.show(ui);
 /// });
 /// # output.textures_delta.clear();
-/// # Ok::<(), framegraph::CompileError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct PlanPanels {
     /// Selected item of the plan.

@@ -3,23 +3,39 @@
 
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, TextureDesc};
 use framegraph_wgpu::{Frame, FrameLoop, Gpu};
+use program::cli::{self, Parsed};
+use program::outputs::Outputs;
 use std::error::Error;
+use std::path::Path;
 use std::process::ExitCode;
 use tracing_example::ChromeTrace;
 
 fn main() -> ExitCode {
-    program::ended("traced_frames", run())
+    let file = cli::argument("FILE", "file to write, for example trace.json").required(true);
+    let command = cli::command("traced_frames", "Writes a trace of ten frames for Perfetto and Chrome.", "").arg(file);
+    match cli::parse(command, std::env::args_os().skip(1)) {
+        Ok(Parsed::Help(text)) => {
+            program::print(text);
+            program::exit(0)
+        }
+        Ok(Parsed::Given(given)) => {
+            program::ended("traced_frames", given.values("FILE").try_for_each(|path| run(Path::new(path))))
+        }
+        Err(error) => {
+            program::note(format_args!("traced_frames: {error}"));
+            program::exit(2)
+        }
+    }
 }
 
-fn run() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args_os().nth(1).ok_or("name the file to write, for example trace.json")?;
+fn run(path: &Path) -> Result<(), Box<dyn Error>> {
     let trace = ChromeTrace::default();
     tracing::subscriber::set_global_default(trace.clone())?;
     let mut frames = FrameLoop::<()>::new(&Gpu::noop()?);
     for _ in 0..10 {
         frames.run([640, 360], &(), |frame, _| declare(frame))?;
     }
-    std::fs::write(&path, trace.json().to_string())?;
+    Outputs::one(path, trace.json().to_string().as_bytes())?;
     program::line(format_args!("{} has the spans of 10 frames", path.display()));
     Ok(())
 }

@@ -45,7 +45,11 @@ impl Probe {
             Build::Full => !case.in_half,
             Build::Half => case.in_half,
         };
-        (meant && self.function == case.function).then_some(Case { parameters: self.parameters, ..*case })
+        (meant && self.function == case.function).then_some(Case {
+            parameters: self.parameters,
+            call: case.expression().leak(),
+            ..*case
+        })
     }
 }
 

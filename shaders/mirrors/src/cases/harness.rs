@@ -66,8 +66,9 @@ impl Case {
         resolve(&Module::new("case.wgsl", &self.wgsl()), &features, &[])
     }
 
-    /// Returns the call, with the parameters in order if the case does not state them.
-    fn expression(&self) -> String {
+    /// Returns the call, with the parameters in order if the case does not state them. A case with other parameters of the
+    /// same function needs this text as its [`Case::call`].
+    pub fn expression(&self) -> String {
         if !self.call.is_empty() {
             return self.call.to_owned();
         }
