@@ -6,7 +6,7 @@
 //! - Drawings as data ([`drawing`]), created by pure functions ([`view`]).
 //! - Panels that paint drawings and tables ([`panel`]).
 //!
-//! Without features, the crate depends on egui alone, and on no window library or graphics API. The feature `overlay` draws
+//! Without features, egui is the only UI dependency. There is no window library and no graphics API. The feature `overlay` draws
 //! egui over a frame in a window of winit (`overlay::Overlay`), and the feature `wgpu` reads the frame times of `framegraph-wgpu`
 //! (`trace_data::TraceData::of_trace`).
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -40,7 +40,7 @@ impl Overlay {
         self.state.on_window_event(window, event).consumed
     }
 
-    /// Shows a UI and records its draws over the contents of `target`.
+    /// Shows a UI and records its draws over the contents of `target`, a view of the first mip level.
     ///
     /// Submit the returned commands after those that draw the contents.
     pub fn draw(
@@ -62,11 +62,16 @@ impl Overlay {
             }
         }
         let pixels_per_point = output.pixels_per_point;
-        let screen = ScreenDescriptor { size_in_pixels: window.inner_size().into(), pixels_per_point };
+        // The window may have another size already, and scissors must not exceed the target.
+        let size = target.texture().size();
+        let screen = ScreenDescriptor { size_in_pixels: [size.width, size.height], pixels_per_point };
         let jobs = ctx.tessellate(output.shapes, pixels_per_point);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("egui") });
-        // Only paint callbacks record command buffers of their own, and the panels have none.
-        self.renderer.update_buffers(device, queue, &mut encoder, &jobs, &screen);
+        // Paint callbacks may record command buffers of their own, which run before the draws.
+        let prepared = self.renderer.update_buffers(device, queue, &mut encoder, &jobs, &screen);
+        if !prepared.is_empty() {
+            queue.submit(prepared);
+        }
         let attachment = wgpu::RenderPassColorAttachment {
             view: target,
             depth_slice: None,

@@ -136,7 +136,7 @@ impl PlanPanels {
         };
         self.selected = self.selected.and_then(name_of);
         self.questions = plan.plan.as_deref().map(|plan| {
-            let base = recompiled::conditions(plan);
+            let base = WhatIf::of(plan.caps().clone(), plan.options());
             let mut questions = Questions::new(base.clone());
             if let Some(old) = &self.questions {
                 questions.asked = old.asked.moved(&old.base, &base);
@@ -241,19 +241,23 @@ impl PlanPanels {
 
     /// Takes the answer of a what-if question, or starts the next.
     fn answer(&mut self, ui: &Ui) {
-        if let Some(done) = self.job.as_ref().and_then(Job::poll) {
-            self.job = None;
+        if let Some((job, done)) = self.job.as_ref().and_then(|job| Some((job, job.poll()?))) {
             match done {
                 Ok(Ok(plan)) => (self.asked, self.error) = (Some(Arc::new(plan)), None),
                 Ok(Err(error)) => self.error = Some(error),
-                Err(()) => self.error = Some("internal error: a plan was not compiled".into()),
+                Err(()) => self.error = Some(job.failure()),
             }
+            self.job = None;
             self.generation += 1;
         }
         let (Some(questions), Some(base)) = (&self.questions, &self.base) else { return };
         let Some(plan) = base.plan.clone() else { return };
         if questions.asked == questions.base {
             self.generation += u64::from(self.asked.is_some());
+            if self.last_asked.is_some() {
+                // The error of a question that was taken back.
+                self.error = None;
+            }
             (self.asked, self.job, self.last_asked) = (None, None, None);
         } else if self.last_asked.as_ref() != Some(&questions.asked) {
             let (what_if, ctx) = (questions.asked.clone(), ui.ctx().clone());

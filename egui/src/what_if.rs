@@ -1,7 +1,7 @@
 //! What-if: changed conditions of a plan, such as device, size, order, memory aliasing and features.
 
 use crate::plan_data::PlanData;
-use framegraph::{Alias, Caps, Order};
+use framegraph::{Alias, Caps, Options, Order};
 
 /// Conditions of a plan. `None` keeps the frame's own value.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,9 +41,21 @@ impl WhatIf {
             features: Vec::new(),
         }
     }
-}
 
-impl WhatIf {
+    /// Returns the conditions of a plan that was compiled for a device with `options`, without features.
+    pub fn of(caps: Caps, options: &Options) -> Self {
+        let Options { frame, order, alias, cull, merge, inline, memoryless, .. } = *options;
+        Self { caps, frame: Some(frame), order, alias, cull, merge, inline, memoryless, features: Vec::new() }
+    }
+
+    /// Returns the options of a plan under these conditions. `own` is the frame's own value of everything else.
+    #[must_use]
+    pub fn options(&self, own: Options) -> Options {
+        let Self { order, alias, cull, merge, inline, memoryless, .. } = *self;
+        let frame = self.frame.unwrap_or(own.frame);
+        Options { frame, order, alias, cull, merge, inline, memoryless, ..own }
+    }
+
     /// Applies the changes from `was` to `self` onto `base`.
     #[must_use]
     pub fn moved(&self, was: &Self, base: &Self) -> Self {

@@ -6,20 +6,13 @@ mod frame;
 use frame::Blur;
 use framegraph_wgpu::remote::{DEFAULT_ADDRESS, Server};
 use framegraph_wgpu::{AdapterRequest, FrameLoop, Gpu};
+use program::cli::{self, Given, Parsed};
 use std::error::Error;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-const HELP: &str = "\
-Draws a small frame without a window, and serves it to viewers: viewer --attach HOST:PORT
-
-usage: remote_engine [--listen HOST:PORT] [--frames N]
-       remote_engine --measure
-
-  --listen HOST:PORT   address of the server (127.0.0.1:9870); port 0 selects a free port
-  --frames N           end after N frames; default: run until stopped
-  --measure            print what viewers cost the frame, and how long they wait for a texture
-
+const ABOUT: &str = "Draws a small frame without a window, and serves it to viewers: viewer --attach HOST:PORT";
+const AFTER: &str = "\
 WGPU_BACKEND and WGPU_ADAPTER_NAME select another adapter.
 Exit codes: 0 success, 1 device failure, 2 invalid option or address.";
 
@@ -28,31 +21,59 @@ const SIZE: [u32; 2] = [640, 360];
 /// Interval of the frames.
 const INTERVAL: Duration = Duration::from_millis(16);
 
-fn main() -> ExitCode {
-    let args: Vec<String> = std::env::args_os().skip(1).map(|arg| arg.to_string_lossy().into_owned()).collect();
-    let (mut address, mut frames) = (DEFAULT_ADDRESS.to_owned(), u64::MAX);
-    let mut rest = args.iter().map(String::as_str);
-    while let Some(arg) = rest.next() {
-        match (arg, rest.next()) {
-            ("--help" | "-h", None) => {
-                program::line(HELP);
-                return program::exit(0);
-            }
-            ("--measure", None) if args.len() == 1 => return finish(cost::measure()),
-            ("--listen", Some(given)) => given.clone_into(&mut address),
-            ("--frames", Some(given)) if given.parse::<u64>().is_ok() => frames = given.parse().unwrap_or(frames),
-            _ => {
-                program::error(format_args!("{arg}: invalid option; `remote_engine --help` lists the options"));
-                return program::exit(2);
-            }
+/// Command line.
+struct Options {
+    address: String,
+    frames: u64,
+    measure: bool,
+}
+
+/// Reads the options.
+///
+/// # Errors
+/// One line that names an invalid option.
+fn options(given: Given) -> Result<Options, String> {
+    let mut options = Options { address: DEFAULT_ADDRESS.to_owned(), frames: u64::MAX, measure: given.has("measure") };
+    for item in given {
+        match item.name() {
+            "listen" => options.address = item.text()?,
+            "frames" => options.frames = item.parse("a number of frames", |text| text.parse().ok())?,
+            _ => {}
         }
+    }
+    Ok(options)
+}
+
+fn main() -> ExitCode {
+    let refuse = |error: String| {
+        program::error(error);
+        program::exit(2)
+    };
+    let listen = format!("address of the server (default {DEFAULT_ADDRESS}); port 0 selects a free port");
+    let command = cli::command("remote_engine", ABOUT, AFTER).args([
+        cli::option("listen", "HOST:PORT", listen),
+        cli::option("frames", "N", "end after N frames; default: run until stopped"),
+        cli::flag("measure", "print what viewers cost the frame, and how long they wait for a texture")
+            .conflicts_with_all(["listen", "frames"]),
+    ]);
+    let given = match cli::parse(command, std::env::args_os().skip(1)) {
+        Ok(Parsed::Help(text)) => {
+            program::print(text);
+            return program::exit(0);
+        }
+        Ok(Parsed::Given(given)) => given,
+        Err(error) => return refuse(error),
+    };
+    let Options { address, frames, measure } = match options(given) {
+        Ok(options) => options,
+        Err(error) => return refuse(error),
+    };
+    if measure {
+        return finish(cost::measure());
     }
     match Server::start(address, "remote_engine") {
         Ok(server) => finish(draw(server, frames)),
-        Err(error) => {
-            program::error(format_args!("--listen {error}"));
-            program::exit(2)
-        }
+        Err(error) => refuse(format!("--listen {error}")),
     }
 }
 

@@ -11,12 +11,13 @@ mod reasons;
 mod svg;
 mod text;
 
+pub use describe::bytes;
 pub use dot::dot;
 pub use flow::{Flow, data_flow, reduced};
 pub use json::{JSON_VERSION, json, totals};
 pub(crate) use json::{Json, field, object};
 pub use mermaid::mermaid;
-pub use svg::svg;
+pub use svg::{svg, xml_escaped};
 pub use text::{TEXT_VERSION, text};
 
-pub(crate) use describe::{bytes, shape};
+pub(crate) use describe::shape;

@@ -62,7 +62,7 @@ error_enum! {
         } => no_history(*age, *frames);
         EmptyHistory "a history must keep at least one earlier frame", "set `frames` to 1 or more";
         NoAlias "`may_alias` needs two different imports that are kept, both textures or both buffers",
-            "import two textures with `Exit::Keep`, and pass a handle of each";
+            "import two textures or two buffers with `Exit::Keep`, and pass a handle of each";
         HistoryTwice "two histories have this name, but the back end identifies histories by name",
             "use different names or scopes";
         Conflict { earlier: AccessKind, later: AccessKind, /** Of a buffer; otherwise of a texture. */ buffer: bool }

@@ -8,7 +8,7 @@
 //! | `shadow` | `shadow`, or one pass for each layer | | shadow maps |
 //! | `prepass` | `prepass`, `velocity`, if requested; `structure` for contact shadows and reflections | | depth, motion vectors, structure |
 //! | `occlusion` | `structure`, `structure_level`…, `occlusion`, `occlusion_blur` twice | depth | structure, ambient occlusion |
-//! | `reflection` | `depth_bounds`…, `reflection`, `reflection_level`… | depth, radiance of the previous frame | structure, reflections, target of the radiance |
+//! | `reflection` | `reflection_depth`, `depth_bounds`…, `reflection`, `reflection_level`… | depth, radiance of the previous frame | structure, reflections, target of the radiance |
 //! | `color` | `color` | depth (with a prepass), shadow maps, structure, ambient occlusion, reflections | radiance, depth |
 //! | `scene` | `scene/copy`, `scene/level`… | radiance, depth | picture behind refractive surfaces |
 //! | `transparent` | `transparent`; `blended/…` for order-independent transparency | all of the above | radiance, depth |

@@ -48,6 +48,8 @@ pub struct FrameLoop<W: ?Sized = ()> {
     imports: Imports,
     executor: Executor,
     flight: FramesInFlight,
+    /// Compilation of the last frame if `frame` declared it and it was executed or recorded; otherwise 0.
+    executed: u64,
 }
 
 /// Result of an executed frame.
@@ -105,6 +107,7 @@ impl<W: ?Sized> FrameLoop<W> {
             imports: Imports::new(),
             executor: Executor::with(gpu, executor),
             flight: FramesInFlight::new(gpu),
+            executed: 0,
         }
     }
 
@@ -137,9 +140,13 @@ impl<W: ?Sized> FrameLoop<W> {
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
         submit: impl FnOnce(FrameCommands) -> SubmissionIndex,
     ) -> Result<Option<FrameOutput<T>>, FrameError<E>> {
-        let Self { frame, plan, scratch, options, imports, executor, flight, .. } = self;
+        let Self { frame, plan, scratch, options, imports, executor, flight, executed, .. } = self;
+        let before = std::mem::take(executed);
         let mut parts = Parts { plan, scratch, options, imports, executor, flight };
-        parts.run(frame, size, world, declare, submit)
+        let output = parts.run(frame, size, world, declare, submit)?;
+        // A skipped frame leaves the previous one in place.
+        *executed = if output.is_some() { self.plan.compilation() } else { before };
+        Ok(output)
     }
 
     /// Runs a frame like [`FrameLoop::run`], with a world of another type that may live for this call only. Use it for
@@ -182,7 +189,8 @@ impl<W: ?Sized> FrameLoop<W> {
         world: &V,
         declare: impl FnOnce(&mut Frame<V>, &mut Imports) -> Result<T, E>,
     ) -> Result<Option<FrameOutput<T>>, FrameError<E>> {
-        let Self { other, plan, scratch, options, imports, executor, flight, .. } = self;
+        let Self { other, plan, scratch, options, imports, executor, flight, executed, .. } = self;
+        *executed = 0;
         let queue = executor.gpu().queue.clone();
         let mut frame = other.take().unwrap_or_default().for_world();
         let mut parts = Parts { plan, scratch, options, imports, executor, flight };
@@ -220,7 +228,9 @@ impl<W: ?Sized> FrameLoop<W> {
         }
         self.flight.begin().map_err(ExecuteError::Device)?;
         let Some(io) = self.declare(size, declare)? else { return Ok(None) };
-        Ok(Some((io, self.executor.record(&self.plan, &self.frame, world, &self.imports)?)))
+        let commands = self.executor.record(&self.plan, &self.frame, world, &self.imports)?;
+        self.executed = self.plan.compilation();
+        Ok(Some((io, commands)))
     }
 
     /// Runs a frame like [`FrameLoop::run`], but records its commands into the caller's encoder
@@ -241,6 +251,7 @@ impl<W: ?Sized> FrameLoop<W> {
         self.flight.begin().map_err(ExecuteError::Device)?;
         let Some(io) = self.declare(size, declare)? else { return Ok(None) };
         self.executor.record_into(&self.plan, &self.frame, world, &self.imports, encoder)?;
+        self.executed = self.plan.compilation();
         Ok(Some(io))
     }
 
@@ -261,7 +272,8 @@ impl<W: ?Sized> FrameLoop<W> {
         size: [u32; 2],
         declare: impl FnOnce(&mut Frame<W>, &mut Imports) -> Result<T, E>,
     ) -> Result<Option<T>, FrameError<E>> {
-        let Self { frame, plan, scratch, options, imports, executor, flight, .. } = self;
+        let Self { frame, plan, scratch, options, imports, executor, flight, executed, .. } = self;
+        *executed = 0;
         Parts { plan, scratch, options, imports, executor, flight }.declare(frame, size, declare)
     }
 
@@ -301,6 +313,12 @@ impl<W: ?Sized> FrameLoop<W> {
     /// Returns the queue of submitted frames mutably, to set its maximum length.
     pub fn frames_in_flight_mut(&mut self) -> &mut FramesInFlight {
         &mut self.flight
+    }
+
+    /// Returns `true` if the last frame was declared for this world type, and was executed or recorded.
+    #[cfg(feature = "remote")]
+    pub(crate) fn has_executed(&self) -> bool {
+        self.executed != 0 && self.executed == self.plan.compilation()
     }
 
     /// Returns the parts of the last frame.

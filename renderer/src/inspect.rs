@@ -192,6 +192,18 @@ pub(crate) struct Started {
     readback: Readback,
 }
 
+/// Texels of a [`Started`] inspection.
+#[cfg(feature = "remote")]
+#[derive(Debug)]
+pub(crate) struct Arrived {
+    /// Part of a texture that was inspected.
+    pub(crate) target: InspectTarget,
+    /// Width and height in texels.
+    pub(crate) size: [u32; 2],
+    /// Bytes of [`Texels::bits`], little-endian.
+    pub(crate) bits: Vec<u8>,
+}
+
 impl Started {
     /// Waits for the texels.
     fn wait(self, gpu: &Gpu) -> Result<Inspection, InspectError> {
@@ -200,12 +212,12 @@ impl Started {
         Ok(Inspection { texels: texels(&target, size, &pixels), target, plan })
     }
 
-    /// Returns the inspection if the texels have arrived, otherwise the started one. Never waits.
+    /// Returns the texels if they have arrived, otherwise the started inspection. Never waits.
     #[cfg(feature = "remote")]
-    pub(crate) fn try_take(self, gpu: &Gpu) -> Result<Result<Inspection, Self>, InspectError> {
+    pub(crate) fn try_take(self, gpu: &Gpu) -> Result<Result<Arrived, Self>, InspectError> {
         let Self { target, size, plan, readback } = self;
         Ok(match readback.try_take(gpu).map_err(|error| unread(&target, error))? {
-            Ok(pixels) => Ok(Inspection { texels: texels(&target, size, &pixels), target, plan }),
+            Ok(pixels) => Ok(Arrived { target, size, bits: pixels.bytes }),
             Err(readback) => Err(Self { target, size, plan, readback }),
         })
     }

@@ -43,7 +43,7 @@ impl DrawLists {
     }
 
     /// Returns the visible instances from precomputed [`Renderables`]. Many instances are culled on the threads of
-    /// `pool` too.
+    /// `pool` too, unless all are sorted in blocks.
     ///
     /// Instances are sorted by the distance of their bounds' center along the view direction. Many opaque instances are
     /// sorted in blocks of 64 consecutive ones, if these are close to each other. Intersecting blended surfaces have no
@@ -53,16 +53,19 @@ impl DrawLists {
         let frustum = Frustum::of_camera(camera, width_over_height);
         let blocks = of.compact_blocks();
         let kind = of.common_kind().filter(|kind| kind.leaves_depth() && of.orders().is_empty());
-        if let (Some(blocks), Some(kind)) = (blocks, kind) {
+        let mut seen = Vec::new();
+        if let (Some(blocks), Some(kind), MIN_SORTED_BY_BLOCK..) = (blocks, kind, of.kinds().len()) {
             let (mut whole, mut others) = (Vec::new(), Vec::new());
             of.boxes().reaching_blocks(camera.eye, frustum.planes(), &mut whole, &mut others);
             if whole.len() * BLOCK + others.len() >= MIN_SORTED_BY_BLOCK {
                 let list = by_block(&whole, &others, blocks, camera);
                 return Self::of_kind(kind, list, of);
             }
+            seen.extend(whole.iter().flat_map(|block| numbers_of(*block)).chain(others));
+            seen.sort_unstable();
+        } else {
+            of.boxes().reaching(camera.eye, frustum.planes(), pool, &mut seen);
         }
-        let mut seen = Vec::new();
-        of.boxes().reaching(camera.eye, frustum.planes(), pool, &mut seen);
         let mut lists = Self::of_kinds(of, seen);
         let forward = camera.forward();
         let distance = |i: u32| ((of.bounds()[i as usize].center() - camera.eye).dot(forward)) as f32;
@@ -127,9 +130,11 @@ impl DrawLists {
         let kind = |i: &u32| of.kinds()[*i as usize];
         let mut counts = [0; 4];
         list.iter().for_each(|i| counts[kind(i) as usize] += 1);
+        if let Some(first) = list.first().map(kind).filter(|first| counts[*first as usize] == list.len()) {
+            return Self::of_kind(first, list, of);
+        }
         let drawn = |wanted: DrawKind| match counts[wanted as usize] {
             0 => Vec::new(),
-            all if all == list.len() => list.clone(),
             count => {
                 let mut own = Vec::with_capacity(count);
                 own.extend(list.iter().filter(|i| kind(i) == wanted));

@@ -255,7 +255,7 @@ impl Renderables {
             let of_blocks = whole.iter().map(|block| self.blocks[*block as usize]);
             return vec![of_blocks.chain(of_others).fold(Aabb::EMPTY, Aabb::union)];
         }
-        let mut numbers: Vec<u32> = whole.iter().flat_map(|block| numbers_of(*block)).chain(others.clone()).collect();
+        let mut numbers: Vec<u32> = whole.iter().flat_map(|block| numbers_of(*block)).chain(others).collect();
         numbers.sort_unstable();
         numbers.iter().map(|number| self.bounds[*number as usize]).collect()
     }

@@ -107,6 +107,11 @@ impl Viewer {
     /// The background of `ui` should have the color that [`panel::dress`] sets. Only changes are recomputed.
     pub fn show(&mut self, ui: &mut Ui) {
         self.session.poll();
+        // The next plan of an engine would replace the plan of the file.
+        #[cfg(feature = "window")]
+        if self.session.documents() != self.document {
+            self.detach();
+        }
         #[cfg(feature = "window")]
         if let Some(live) = &mut self.live {
             live.tick(&mut self.session, ui.input(|i| i.stable_dt));
@@ -240,11 +245,6 @@ impl Viewer {
             && live.open(path, &mut self.session)
         {
             return;
-        }
-        // The next plan of an engine would replace the file.
-        #[cfg(feature = "window")]
-        if role == Role::Shown {
-            self.detach();
         }
         self.session.open(path, role);
     }

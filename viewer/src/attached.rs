@@ -6,7 +6,7 @@ use crate::plan_data::{PlanData, read};
 use crate::session::Session;
 use crate::trace_data::{TraceData, TracedFrame, TracedStep, traced_name};
 use crate::what_if::{Planner, WhatIf};
-use framegraph::{Options, Plan};
+use framegraph::Plan;
 use framegraph_wgpu::inspect::{InspectTarget, Request, VersionSelector};
 use framegraph_wgpu::remote::{
     Connection, FrameSample, FromEngine, FromViewer, RemotePlan, RemoteTexture, TextureRequest,
@@ -272,8 +272,7 @@ fn follow(address: &str, news: &SyncSender<News>, wake: &dyn Fn()) -> String {
 /// measured sizes of placed textures.
 fn running(engine: &str, message: RemotePlan) -> Result<Running, String> {
     let RemotePlan { compilation, json, graph, caps, options, declared_at } = message;
-    let Options { frame, order, alias, cull, merge, inline, memoryless, .. } = options;
-    let base = WhatIf { caps, frame: Some(frame), order, alias, cull, merge, inline, memoryless, features: Vec::new() };
+    let base = WhatIf::of(caps, &options);
     let planner = RemotePlanner { source: GraphSource::of_text(engine.to_owned(), graph), declared_at };
     let compiled = planner.plan(&base)?;
     let plan = compiled.plan.clone().ok_or("no plan")?;

@@ -63,13 +63,11 @@ impl Planner for GraphSource {
     }
 
     fn plan(&self, what_if: &WhatIf) -> Result<PlanData, String> {
-        let WhatIf { caps, frame, order, alias, cull, merge, inline, memoryless, features } = what_if.clone();
         let file = GraphFile::parse_with(&self.path, &self.text, &self.included).map_err(|e| e.to_string())?;
-        let frame = frame.or(file.frame()).unwrap_or(FRAME);
-        let options = Options { frame, order, alias, cull, merge, inline, memoryless, ..Options::default() };
+        let options = what_if.options(Options { frame: file.frame().unwrap_or(FRAME), ..Options::default() });
         let (mut graph, mut plan) = (Graph::new(), Plan::new());
         let registry = framegraph_passes::frame::plugins::registry();
-        file.plan(&features, &registry, &mut graph, (&caps, &options), &mut Scratch::new(), &mut plan)
+        file.plan(&what_if.features, &registry, &mut graph, (&what_if.caps, &options), &mut Scratch::new(), &mut plan)
             .map_err(|e| e.to_string())?;
         let mut data = PlanData::of(&plan, file.name()).map_err(|e| e.to_string())?;
         data.declared_at = data.form.passes.iter().map(|pass| self.place_of(&pass.name)).collect();

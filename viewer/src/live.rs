@@ -234,7 +234,8 @@ impl Live {
     /// Applies finished background work and advances the animation.
     pub fn tick(&mut self, session: &mut Session, passed_s: f32) {
         self.collect(session, Duration::ZERO);
-        if let Some(result) = self.loading.as_ref().and_then(Job::poll) {
+        if let Some((job, result)) = self.loading.as_ref().and_then(|job| Some((job, job.poll()?))) {
+            let failure = job.failure();
             self.loading = None;
             match result {
                 Ok(Ok((loaded, warnings))) => {
@@ -257,7 +258,7 @@ impl Live {
                     self.again();
                 }
                 Ok(Err(error)) => session.say(error),
-                Err(()) => session.say("internal error: loading ended without a result".into()),
+                Err(()) => session.say(failure),
             }
         }
         self.relight(session);

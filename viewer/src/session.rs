@@ -151,9 +151,10 @@ impl Session {
         self.documents
     }
 
-    /// Begins another file or scene: closes messages of the previous one.
+    /// Begins another file, scene or engine: closes messages of the previous one, and its plan for comparison.
     pub fn begin_document(&mut self) {
         self.documents += 1;
+        self.generation += u64::from(self.before.take().is_some());
         (self.notice, self.selected) = (None, None);
         self.messages.clear();
     }
@@ -265,11 +266,12 @@ impl Session {
             let path = path.clone();
             self.open(&path, Role::Shown);
         }
-        while let Some(result) = self.job.as_ref().and_then(Job::poll) {
+        while let Some((job, result)) = self.job.as_ref().and_then(|job| Some((job, job.poll()?))) {
+            let result = result.map_err(|()| job.failure());
             self.job = None;
             match result {
                 Ok(brought) => self.take(brought),
-                Err(()) => self.say("internal error: a job ended without a result".into()),
+                Err(failure) => self.say(failure),
             }
             if std::mem::take(&mut self.stale) {
                 self.ask();

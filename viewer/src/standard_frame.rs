@@ -85,14 +85,13 @@ impl Planner for StandardFrame {
     }
 
     fn plan(&self, what_if: &WhatIf) -> Result<PlanData, String> {
-        let WhatIf { caps, frame, order, alias, cull, merge, inline, memoryless, features } = what_if.clone();
-        let size = frame.unwrap_or(FRAME);
-        let inline = inline && self.frame.inline;
-        let options = Options { frame: size, order, alias, cull, merge, inline, memoryless, ..Options::default() };
+        let mut options = what_if.options(Options { frame: FRAME, ..Options::default() });
+        options.inline &= self.frame.inline;
         let mut frame = Frame::<World>::new();
-        declare(&mut frame, &self.settings(&features, size), &self.facts).map_err(|e| e.to_string())?;
+        declare(&mut frame, &self.settings(&what_if.features, options.frame), &self.facts)
+            .map_err(|e| e.to_string())?;
         let mut plan = Plan::new();
-        compile(frame.graph(), &caps, &options, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
+        compile(frame.graph(), &what_if.caps, &options, &mut Scratch::new(), &mut plan).map_err(|e| e.to_string())?;
         PlanData::of(&plan, &self.name).map_err(|e| e.to_string())
     }
 }

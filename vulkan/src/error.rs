@@ -47,12 +47,15 @@ pub enum Error {
         /// Name of the import.
         resource: String,
     },
-    /// Two imports are bound to one image or buffer, and a pass writes one of them.
+    /// Two imports are bound to one image or buffer, and a pass writes one of them. Also two imports of one image that
+    /// are used in several layouts or on several queues.
     Shared {
         /// Name of the first import.
         resource: String,
         /// Name of the second import.
         other: String,
+        /// True for a buffer, false for an image.
+        is_buffer: bool,
     },
     /// The schedule uses more queues than the device has.
     Queues {
@@ -137,10 +140,13 @@ impl fmt::Display for Error {
                 write!(f, "{resource}: the device does not support {format} with this usage; use another format")
             }
             Self::Import { resource } => write!(f, "{resource}: the import is not bound; add it to `Imports`"),
-            Self::Shared { resource, other } => write!(
+            Self::Shared { resource, other, is_buffer: false } => {
+                write!(f, "{resource}: it is bound to the image of the import {other}; import it once")
+            }
+            Self::Shared { resource, other, is_buffer: true } => write!(
                 f,
-                "{resource}: it is bound to the image or buffer of the import {other}; declare `Graph::may_alias_buffer`, \
-                 or import it once"
+                "{resource}: it is bound to the buffer of the import {other}; declare `Graph::may_alias_buffer`, or \
+                 import it once"
             ),
             Self::Queues { wanted, given } => {
                 write!(f, "schedule: it uses {wanted} queues and the device has {given}; schedule for fewer queues")

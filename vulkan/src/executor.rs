@@ -149,9 +149,12 @@ impl Executor {
         if let Some(id) = imports.missing(plan) {
             return Err(Error::Import { resource: plan.graph().resource_name(id).to_owned() });
         }
-        if let Some(pair) = imports.shared(plan) {
+        let schedule = self.prepared.as_ref().and_then(|prepared| prepared.schedule.as_ref());
+        let queues = schedule.map_or(1, |schedule| schedule.layout.queues.len());
+        if let Some(pair) = imports.shared(plan, queues) {
+            let is_buffer = imports.bound_buffer(pair[0]).is_some();
             let [resource, other] = pair.map(|id| plan.graph().resource_name(id).to_owned());
-            return Err(Error::Shared { resource, other });
+            return Err(Error::Shared { resource, other, is_buffer });
         }
         self.dirty = true;
         let result = self.run(&imports, &mut record);

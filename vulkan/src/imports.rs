@@ -4,7 +4,7 @@
 
 use crate::driver::Thing;
 use ash::vk;
-use framegraph::{Plan, ResourceId};
+use framegraph::{Entry, Kind, Plan, ResourceId};
 use std::collections::BTreeMap;
 
 /// A bound image or buffer.
@@ -105,9 +105,12 @@ impl Imports {
         self.signals.push(semaphore);
     }
 
-    /// Returns two imports that are bound to one image or buffer, if a pass writes one of them and the graph does not
-    /// declare that they may alias.
-    pub(crate) fn shared(&self, plan: &Plan) -> Option<[ResourceId; 2]> {
+    /// Returns two imports that are bound to one image or buffer, unless the graph declares that they may alias, or
+    /// passes only read them.
+    ///
+    /// Read-only images must also stay in one state, on one queue. Barriers track the layout of each import, but the
+    /// image has only one.
+    pub(crate) fn shared(&self, plan: &Plan, queues: usize) -> Option<[ResourceId; 2]> {
         let graph = plan.graph();
         let pairs = self.rows.iter().flat_map(|(a, row)| {
             let same = move |(b, other): &(&ResourceId, &Import)| *b > a && other.thing == row.thing;
@@ -118,7 +121,10 @@ impl Imports {
             kept.flat_map(|pass| graph.accesses_of(pass)).any(|a| a.resource == resource && a.mode.writes())
         };
         let mut pairs = pairs.filter(|[a, b]| !graph.are_aliases(*a, *b));
-        pairs.find(|pair| pair.iter().any(|resource| written(*resource)))
+        pairs.find(|pair| {
+            let is_image = matches!(self.rows[&pair[0]].thing, Thing::Image(_));
+            pair.iter().any(|id| written(*id)) || is_image && (queues > 1 || !has_one_state(plan, *pair))
+        })
     }
 
     /// Returns the first import that the plan uses and that is not bound, or bound to the wrong kind.
@@ -132,4 +138,17 @@ impl Imports {
             used && !self.rows.get(id).is_some_and(fits)
         })
     }
+}
+
+/// Returns `true` if every barrier of two imports leads to one state, which is also their declared state.
+fn has_one_state(plan: &Plan, pair: [ResourceId; 2]) -> bool {
+    let rows = plan.graph().resources();
+    let declared = pair.iter().filter_map(|id| match rows[id.index()].kind {
+        Kind::Imported { entry: Entry::Left { state, .. }, .. } => Some(state),
+        _ => None,
+    });
+    let barriers = plan.barriers().iter().filter(|barrier| pair.contains(&barrier.resource));
+    let mut states = declared.chain(barriers.map(|barrier| barrier.to));
+    let first = states.next();
+    states.all(|state| Some(state) == first)
 }

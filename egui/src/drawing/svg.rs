@@ -1,6 +1,7 @@
 //! Drawing as an SVG document: one file without links, scripts or embedded fonts.
 
 use super::{ADVANCE, Align, Drawing, Ink, Shape, Theme};
+use framegraph::dump::xml_escaped;
 use std::fmt::Write;
 
 /// Margin around the shapes, in points.
@@ -62,7 +63,7 @@ pub fn svg(drawing: &Drawing, theme: Theme) -> String {
                     "<text x=\"{x:.1}\" y=\"{y:.1}\" dy=\"0.35em\" font-size=\"{size}\" text-anchor=\"{anchor}\" \
                      textLength=\"{length:.1}\" fill=\"{}\"{turn}>{}</text>",
                     color(*ink),
-                    escaped(text)
+                    xml_escaped(text)
                 )
             }
         };
@@ -74,7 +75,7 @@ pub fn svg(drawing: &Drawing, theme: Theme) -> String {
             "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"transparent\"><title>{}</title></rect>",
             right - left,
             bottom - top,
-            escaped(&hit.tip)
+            xml_escaped(&hit.tip)
         );
     }
     out += "</svg>\n";
@@ -83,20 +84,4 @@ pub fn svg(drawing: &Drawing, theme: Theme) -> String {
 
 const fn dashes(dashed: bool) -> &'static str {
     if dashed { " stroke-dasharray=\"4 3\"" } else { "" }
-}
-
-/// Escapes text for XML 1.0.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c != '\n' && c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}') => out.push('\u{FFFD}'),
-            c => out.push(c),
-        }
-    }
-    out
 }

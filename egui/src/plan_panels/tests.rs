@@ -44,4 +44,9 @@ fn the_graph_of_the_plan_is_compiled_under_other_conditions() {
     let next = synthetic::large(5).expect("a plan").plan.expect("the plan of this process");
     panels.update(&next);
     assert_eq!(panels.selected, Some(Item::Pass(0)));
+    assert_eq!(data.form.passes[4].name, "show 4");
+    panels.update(&plan);
+    panels.selected = Some(Item::Pass(4));
+    panels.update(&next);
+    assert_eq!(panels.selected, None, "the next plan has no pass `show 4`");
 }

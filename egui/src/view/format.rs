@@ -2,18 +2,7 @@
 
 use crate::drawing::{Drawing, Ink};
 use crate::plan_data::PlanData;
-
-/// Formats bytes with a binary unit.
-pub fn bytes(count: u64) -> String {
-    const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
-    let mut value = count as f64;
-    let mut unit = 0;
-    while value >= 1024.0 && unit + 1 < UNITS.len() {
-        value /= 1024.0;
-        unit += 1;
-    }
-    if unit == 0 { format!("{count} B") } else { format!("{value:.1} {}", UNITS[unit]) }
-}
+pub use framegraph::dump::bytes;
 
 /// Returns the label of a field of the totals: `unresolve_bytes` becomes `load bytes`, `resolves` becomes `stores`.
 ///

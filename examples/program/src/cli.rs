@@ -9,6 +9,9 @@ use std::ffi::{OsStr, OsString};
 /// Maximum width of the help in columns.
 const WIDTH: usize = 120;
 
+/// Value name of an option whose value is a list of options, such as `--compare-with --no-fxaa`.
+pub const OPTIONS: &str = "OPTIONS";
+
 /// Options and arguments of a command line, in their order.
 #[derive(Clone, Debug, Default)]
 pub struct Given {
@@ -82,7 +85,8 @@ pub fn parse(command: Command, args: impl IntoIterator<Item = OsString>) -> Resu
         let mut indices = matches.indices_of(id).into_iter().flatten();
         for values in matches.get_raw_occurrences(id).into_iter().flatten() {
             let values: Vec<OsString> = values.map(OsStr::to_owned).collect();
-            match values.iter().find_map(|value| option_named(&declared, value)) {
+            let mut checked = values.iter().filter(|_| value_name(&declared, id) != Some(OPTIONS));
+            match checked.find_map(|value| option_named(&declared, value)) {
                 Some("help") => return Ok(Parsed::Help(declared.render_help().to_string())),
                 Some(_) => return Err(missing(&declared, id)),
                 None => {}
@@ -110,9 +114,13 @@ fn option_named<'a>(declared: &'a Command, value: &OsStr) -> Option<&'a str> {
 
 /// Returns the message for an option without its value.
 fn missing(declared: &Command, id: &str) -> String {
+    format!("--{id}: missing {}; see --help", value_name(declared, id).unwrap_or("value"))
+}
+
+/// Returns the name of an option's first value.
+fn value_name<'a>(declared: &'a Command, id: &str) -> Option<&'a str> {
     let names = declared.get_arguments().find(|arg| arg.get_id() == id).and_then(Arg::get_value_names);
-    let value = names.and_then(|names| names.first()).map_or("value", |name| name.as_str());
-    format!("--{id}: missing {value}; see --help")
+    names.and_then(|names| names.first()).map(|name| name.as_str())
 }
 
 impl Given {
@@ -223,6 +231,7 @@ mod tests {
             option("enable", "EFFECT", "effect").action(ArgAction::Append),
             option("turntable", "N", "pictures").num_args(2).value_names(["N", "DIR"]),
             flag("plan", "plan").alias("former"),
+            option("other", OPTIONS, "other options"),
             argument("FILE", "file"),
         ];
         parse(command("own", "about", "after").args(options), line.split_whitespace().map(OsString::from))
@@ -241,6 +250,10 @@ mod tests {
         assert_eq!((items[3].raw(), items[3].second()), ("3".into(), "d".into()));
         assert_eq!(items[5].parse("a number", |text| text.parse().ok()), Ok(-3));
         assert_eq!(items[5].parse("WxH", |_| None::<u8>), Err("--size -3: expected WxH".into()));
+        for line in ["--other --plan", "--other=--plan"] {
+            let Ok(Parsed::Given(given)) = parsed(line) else { panic!("{line}: a list of options is a value") };
+            assert_eq!((given.values("other").next(), given.has("plan")), (Some("--plan".as_ref()), false), "{line}");
+        }
         for line in ["--help", "--size --help", "--enable -h"] {
             assert!(matches!(parsed(line), Ok(Parsed::Help(text)) if text.contains("--size <WxH>")), "{line}");
         }

@@ -26,6 +26,7 @@ mod bytes;
 
 pub use bytes::bytes;
 
+use framegraph::resource::Kind;
 use framegraph::{Attachment, Decision, Join, Placement, Plan, Reason, Subject};
 use std::fmt;
 
@@ -44,7 +45,7 @@ pub enum Cost {
     Steps,
     /// Number of culled passes.
     Culled,
-    /// Memory of transient resources, in bytes.
+    /// Memory of transient resources, and of histories in placed memory, in bytes.
     Bytes,
     /// Memory of exported textures and history images, in bytes.
     OwnBytes,
@@ -104,7 +105,11 @@ impl Cost {
         let loads = matches!(decision.reason, Reason::LoadWritten(_) | Reason::LoadEntry);
         let stores = matches!(
             decision.reason,
-            Reason::StoreReadBy(_) | Reason::StoreExport | Reason::StoreImport | Reason::StoreHistory
+            Reason::StoreReadBy(_)
+                | Reason::StoreResolved(_)
+                | Reason::StoreExport
+                | Reason::StoreImport
+                | Reason::StoreHistory
         );
         match (self, decision.subject) {
             (Self::Loads | Self::LoadedBytes, _) => loads,
@@ -113,11 +118,7 @@ impl Cost {
                 let target = |a: &Attachment| a.resource == resource && a.role.is_resolve();
                 stores && plan.attachments_of(step).iter().any(target)
             }
-            (Self::FullScreenResolves, Subject::Resource(resource)) => {
-                plan.step_ids()
-                    .any(|step| plan.full_screen_resolves(step).any(|(samples, _)| samples.resource == resource))
-                    && matches!(decision.reason, Reason::NeedsMemory(_))
-            }
+            (Self::FullScreenResolves, _) => matches!(decision.reason, Reason::ResolvePass(_)),
             (Self::Traffic, _) => loads || stores,
             (Self::Steps, _) => matches!(decision.reason, Reason::Split(..)),
             (Self::Culled, _) => matches!(
@@ -132,7 +133,8 @@ impl Cost {
                 let peak = plan.memory().peak;
                 let live = !row.first.is_none() && row.first <= peak && peak <= row.last;
                 let shared = matches!(row.placement, Placement::Slot(_) | Placement::Heap { .. });
-                live && shared && is_placement(decision.reason)
+                // Histories keep their place in every frame.
+                shared && (live && is_placement(decision.reason) || decision.reason == Reason::Persistent)
             }
             (Self::OwnBytes, Subject::Resource(resource)) => {
                 let own = plan.resources()[resource.index()].placement == Placement::Own;
@@ -147,12 +149,7 @@ impl Cost {
 const fn is_placement(reason: Reason) -> bool {
     matches!(
         reason,
-        Reason::SlotFirst
-            | Reason::SlotAfter(_)
-            | Reason::Placed
-            | Reason::PlacedAfter(_)
-            | Reason::AliasingOff
-            | Reason::NeedsMemory(_)
+        Reason::SlotFirst | Reason::SlotAfter(_) | Reason::Placed | Reason::PlacedAfter(_) | Reason::AliasingOff
     )
 }
 
@@ -346,7 +343,14 @@ fn bytes_of(plan: &Plan, subject: Subject) -> Option<u64> {
         traffic.map(|t| if loaded { t.loaded_bytes } else { t.stored_bytes }).fold(0, u64::saturating_add)
     };
     match subject {
-        Subject::Resource(resource) => Some(plan.resources()[resource.index()].bytes),
+        Subject::Resource(resource) => {
+            let images = match plan.graph().resources()[resource.index()].kind {
+                Kind::HistoryCurrent { frames } => u64::from(frames) + 1,
+                Kind::HistoryPrevious { .. } => 0,
+                _ => 1,
+            };
+            Some(plan.resources()[resource.index()].bytes.saturating_mul(images))
+        }
         Subject::Load(step, resource) => Some(moved(step, resource, true)),
         Subject::Store(step, resource) => Some(moved(step, resource, false)),
         Subject::Pass(_) => None,

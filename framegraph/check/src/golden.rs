@@ -34,7 +34,8 @@ pub fn check(path: impl AsRef<Path>, text: &str) -> Result<(), GoldenError> {
     if is_updating() {
         return std::fs::write(path, text).map_err(failed);
     }
-    compare(&name, &std::fs::read_to_string(path).map_err(failed)?, text)
+    let unread = |error| failed(std::io::Error::other(format!("{error}; set {UPDATE}=1 to write it")));
+    compare(&name, &std::fs::read_to_string(path).map_err(unread)?, text)
 }
 
 /// Compares a text with a committed one; `name` is its file in the error. Line ends of Windows count as line feeds.
@@ -73,7 +74,7 @@ pub enum GoldenError {
 impl fmt::Display for GoldenError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::File { name, error } => write!(f, "{name}: {error}; set {UPDATE}=1 to write it"),
+            Self::File { name, error } => write!(f, "{name}: {error}"),
             Self::Differs { name, diff } => {
                 write!(f, "{name}: the text differs; set {UPDATE}=1 to write it anew\n{}", diff.trim_end())
             }

@@ -90,10 +90,7 @@ pub fn check(plan: &Plan, schedule: &Schedule) -> Vec<Violation> {
         let graph = plan.graph();
         let asks = |member: &StepPass| {
             graph.passes()[member.pass.index()].flags.has(PassFlags::MAIN_QUEUE)
-                || graph
-                    .accesses_of(member.pass)
-                    .iter()
-                    .any(|access| graph.aliases_of(access.resource).next().is_some())
+                || graph.accesses_of(member.pass).iter().any(|access| graph.has_alias(access.resource))
         };
         let asked = *lane != QueueId::MAIN && plan.passes_of(step).iter().any(asks);
         if asked || !layout.queues[lane.index()].runs(plan.steps()[step.index()].kind) {

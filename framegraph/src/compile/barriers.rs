@@ -111,6 +111,7 @@ pub(crate) fn barriers(
     let BarrierScratch { last, now, beside, .. } = scratch;
     barriers.clear();
     last.clear();
+    beside.clear();
     last.resize(parts.total(), NEVER);
     for (id, row) in graph.resource_ids().zip(&graph.resources) {
         let (state, stages) = match row.kind {

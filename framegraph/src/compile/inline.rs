@@ -8,12 +8,12 @@
 use super::attachment_set::AttachmentSet;
 use super::bindings::fits_shader;
 use super::join::Candidate;
-use super::steps::{InlinedInto, ResourceRange, range_in_plan};
+use super::steps::{InlinedInto, ResourceRange, is_inlined, range_in_plan};
 use crate::access::{Access, AccessKind, Mode};
 use crate::decision::Refusal;
 use crate::graph::{PassFlags, Tables};
 use crate::id::{AccessId, PassId, ResourceId};
-use crate::plan::StepPass;
+use crate::plan::{Join, StepPass};
 use crate::resolve::ResolveMode;
 use crate::resource::{Dimension, Kind};
 
@@ -130,6 +130,8 @@ pub(crate) fn inlinable(
         || to.samples != 1
         || input.range.view.or(output.range.view).is_some()
         || !to.format.is_resolvable()
+        // Several attachments of the intermediate, each with a part of its layers.
+        || attached.colors().chain(attached.resolves()).filter(is_input).any(|(_, (_, r))| r.layer_range(from.tracked_layers()).len() != layers)
     {
         return Err(Refusal::TargetShape);
     }
@@ -137,12 +139,16 @@ pub(crate) fn inlinable(
     if prior_access(output) != PriorAccess::No || others.any(|a| prior_access(a) == PriorAccess::Written) {
         return Err(Refusal::SampledElsewhere);
     }
-    let producer = check_producers(graph, members, inlined_into, &[Some(intermediate), samples])?;
-    // One shader binds the resources of the producer and of all its epilogues, except the value between them.
-    let inlined = members.iter().filter(|m| m.join == crate::plan::Join::Inlined).map(|m| m.pass);
-    let shader = inlined.chain([producer, candidate.pass]).flat_map(|pass| graph.accesses_of(pass));
-    if !fits_shader(graph, candidate.caps, shader.filter(|a| a.resource != intermediate)) {
-        return Err(Refusal::TooManyBindings);
+    let drawn = [Some(intermediate), samples];
+    let producer = check_producers(graph, members, inlined_into, &drawn)?;
+    // The shader of each producer binds the resources of all epilogues too, except the values between them.
+    let inlined = members.iter().filter(|m| m.join == Join::Inlined).map(|m| m.pass);
+    let exists = |a: &&Access| a.resource != intermediate && !is_inlined(inlined_into, a.resource);
+    for (pass, _) in producers(graph, members, inlined_into, &drawn) {
+        let shader = inlined.clone().chain([pass, candidate.pass]).flat_map(|pass| graph.accesses_of(pass));
+        if !fits_shader(graph, candidate.caps, shader.filter(exists)) {
+            return Err(Refusal::TooManyBindings);
+        }
     }
     // The only uses may be the inlined read and the draws of the step.
     let inside = count_inside(graph, members, intermediate);
@@ -169,6 +175,21 @@ fn count_inside(graph: &Tables, members: &[StepPass], resource: ResourceId) -> u
     accesses.filter(|a| a.resource == resource && draws(a)).count() as u32
 }
 
+/// Returns the passes that draw into one of the textures, each with its first such access. Inlined passes are left out.
+fn producers<'a>(
+    graph: &'a Tables,
+    members: &'a [StepPass],
+    inlined_into: &'a InlinedInto,
+    drawn: &'a [Option<ResourceId>; 2],
+) -> impl Iterator<Item = (PassId, &'a Access)> {
+    members.iter().filter(|m| m.join != Join::Inlined).filter_map(|member| {
+        let is_drawn = |a: &Access| drawn.contains(&Some(range_in_plan(graph, inlined_into, a).0));
+        let mut colors = graph.accesses_of(member.pass).iter();
+        let color = colors.find(|a| a.kind == AccessKind::Color && is_drawn(a))?;
+        Some((member.pass, color))
+    })
+}
+
 /// Checks the passes that draw into the intermediate: each must accept an epilogue and must not blend, and the first
 /// must not use previous contents. Returns the last of them.
 fn check_producers(
@@ -178,11 +199,8 @@ fn check_producers(
     drawn: &[Option<ResourceId>; 2],
 ) -> Result<PassId, Refusal> {
     let mut producer = None;
-    for member in members.iter().filter(|m| m.join != crate::plan::Join::Inlined) {
-        let is_drawn = |a: &Access| drawn.contains(&Some(range_in_plan(graph, inlined_into, a).0));
-        let mut colors = graph.accesses_of(member.pass).iter().filter(|a| a.kind == AccessKind::Color && is_drawn(a));
-        let Some(color) = colors.next() else { continue };
-        let flags = graph.passes[member.pass.index()].flags;
+    for (pass, color) in producers(graph, members, inlined_into, drawn) {
+        let flags = graph.passes[pass.index()].flags;
         if flags.has(PassFlags::BLENDS) {
             return Err(Refusal::Blends);
         }
@@ -192,7 +210,7 @@ fn check_producers(
         if producer.is_none() && color.mode == Mode::Modify {
             return Err(Refusal::BuildsOnContents);
         }
-        producer = Some(member.pass);
+        producer = Some(pass);
     }
     producer.ok_or(Refusal::NoEpilogue)
 }

@@ -133,8 +133,8 @@ pub(crate) fn part(range: &Range, bytes: Option<ByteRange>) -> String {
     format!("{mips}{layers}{aspect}{view}{bytes}")
 }
 
-/// Formats a number of bytes with a unit, keeping three or four digits.
-pub(crate) fn bytes(count: u64) -> String {
+/// Formats a number of bytes with a binary unit, such as `17.9 MiB`.
+pub fn bytes(count: u64) -> String {
     const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
     let mut value = count as f64;
     let mut unit = 0;

@@ -9,6 +9,7 @@ mod memory;
 use super::describe::bytes;
 use super::reasons::Reasons;
 use crate::plan::Plan;
+pub use canvas::xml_escaped;
 use canvas::{Canvas, Ink, MARGIN};
 
 /// Returns the plan as an SVG document.

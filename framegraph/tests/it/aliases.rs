@@ -100,6 +100,20 @@ fn a_device_with_layouts_refuses_aliases() {
 }
 
 /// Returns a graph that writes the buffer `a` in compute, and reads `b` in two steps.
+/// Aliases of a graph have no effect on the next one that is compiled with the same [`Scratch`].
+#[test]
+fn aliases_are_forgotten_with_their_graph() {
+    let caps = Caps { explicit_barriers: true, ..Caps::desktop() };
+    let compiled = |scratch: &mut Scratch, alias: bool| {
+        let mut plan = Plan::new();
+        compile(&buffers(alias), &caps, &Options::for_frame(8, 8), scratch, &mut plan).unwrap();
+        plan.barriers().to_vec()
+    };
+    let mut used = Scratch::new();
+    assert_ne!(compiled(&mut used, true), compiled(&mut Scratch::new(), false), "aliases add barriers");
+    assert_eq!(compiled(&mut used, false), compiled(&mut Scratch::new(), false));
+}
+
 fn buffers(alias: bool) -> Graph {
     let mut g = Graph::new();
     let [a, b, c] = ["a", "b", "c"].map(|name| g.import_buffer(name, 64, Entry::Defined, Exit::Keep));

@@ -206,6 +206,46 @@ fn an_epilogue_counts_among_the_bindings_of_its_producer() {
     assert_eq!((inlined(15), inlined(16)), ((1, false), (0, true)));
 }
 
+/// The limit holds for the shader of every producer, and textures between epilogues are no bindings.
+#[test]
+fn every_producer_of_a_chain_of_epilogues_is_counted() {
+    let inlined = |opaque: usize, sky: usize| {
+        let mut g = Graph::new();
+        let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+        let mut draw = |name: String| {
+            let texture = g.texture(&name, desc);
+            g.add_fn(&name, |p| p.color(texture, Intent::Overwrite)).unwrap()
+        };
+        let read: Vec<Texture> = (0..opaque.max(sky)).map(|n| draw(format!("t{n}"))).collect();
+        let [mut before, ldr, screen] = ["hdr", "ldr", "screen"].map(|name| g.texture(name, desc));
+        for (name, count, intent) in [("opaque", opaque, Intent::Overwrite), ("sky", sky, Intent::Modify)] {
+            let draw = |p: &mut PassBuilder<'_>| {
+                p.takes_epilogue();
+                read[..count].iter().try_for_each(|texture| p.sampled(*texture).map(drop))?;
+                p.color(before, intent)
+            };
+            before = g.add_fn(name, draw).unwrap();
+        }
+        for (name, target) in [("grade", ldr), ("vignette", screen)] {
+            let epilogue = |p: &mut PassBuilder<'_>| {
+                p.pointwise();
+                p.takes_epilogue();
+                p.same_pixel(before)?;
+                p.color(target, Intent::Overwrite)
+            };
+            before = g.add_fn(name, epilogue).unwrap();
+        }
+        g.export(before).unwrap();
+        let mut plan = Plan::new();
+        compile(&g, &Caps::wgpu(), &Options::for_frame(8, 8), &mut Scratch::new(), &mut plan).unwrap();
+        let report = check::examine(&plan);
+        assert!(report.is_clean(), "{report}");
+        plan.counts().inlined
+    };
+    let limit = Caps::wgpu().max_sampled_textures as usize;
+    assert_eq!((inlined(limit, 0), inlined(0, limit), inlined(limit, limit)), (2, 2, 2));
+}
+
 /// A device without storage in raster passes refuses it for textures as for buffers.
 #[test]
 fn storage_in_a_raster_pass_needs_the_device() {

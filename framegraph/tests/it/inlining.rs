@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use framegraph::*;
+use framegraph_check::check;
 
 struct Case {
     samples: u8,
@@ -123,4 +124,36 @@ fn chains_of_pointwise_passes_collapse() {
     let p = plan(&g, &wgpu());
     assert_eq!(steps(&p), [["scene", "expose", "grade", "tonemap"]]);
     assert_eq!((p.counts().inlined, p.counts().resolves), (3, 1), "{}", dump::text(&p));
+}
+
+/// Two attachments of one texture, each with a layer, cannot become attachments of the target.
+#[test]
+fn layers_that_are_attached_one_by_one_are_not_inlined() {
+    let frame = |apart: bool| {
+        let mut g = Graph::new();
+        let [drawn, target] = ["hdr", "target"].map(|name| g.texture(name, hdr().layers(2)));
+        let drawn = g
+            .add_fn("scene", |p| {
+                p.takes_epilogue();
+                if apart {
+                    let drawn = p.color(drawn.layer(0), BLACK)?;
+                    return p.color(drawn.layer(1), BLACK);
+                }
+                p.color(drawn, BLACK)
+            })
+            .unwrap();
+        let target = g
+            .add_fn("grade", |p| {
+                p.pointwise();
+                p.same_pixel(drawn)?;
+                p.color(target, Intent::Overwrite)
+            })
+            .unwrap();
+        g.export(target).unwrap();
+        let plan = plan(&g, &Caps { max_attached_layers: 2, ..wgpu() });
+        let report = check::examine(&plan);
+        assert!(report.is_clean(), "{report}");
+        plan.counts().inlined
+    };
+    assert_eq!((frame(false), frame(true)), (1, 0));
 }

@@ -15,7 +15,7 @@ use support::{Arguments, Scene};
 
 /// Frames before anything is measured.
 const WARM_UP: u32 = 6;
-/// Measured frames of each way, in turns.
+/// Measured frames of each way. The ways alternate.
 const MEASURED: usize = 9;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -30,13 +30,7 @@ pub fn declare(frame: &Observed, pointwise: &[&str]) -> Declared {
         textures: frame.textures.iter().map(|_| None).collect(),
         buffers: frame.buffers.iter().map(|_| None).collect(),
     };
-    let used = |texture: usize| {
-        let bound = |of: &Used| matches!(of, Used::Texture(region) if region.texture == texture);
-        frame.passes.iter().any(|pass| {
-            pass.uses.iter().any(|own| bound(&own.of)) || pass.attachments.iter().any(|a| a.region.texture == texture)
-        })
-    };
-    for (index, texture) in frame.textures.iter().enumerate().filter(|(index, _)| used(*index)) {
+    for (index, texture) in frame.textures.iter().enumerate().filter(|(index, _)| frame.uses(*index)) {
         let extent = texture.desc.extent;
         let extent = if extent.texels([1, 1]) == size { Extent::FRAME } else { extent };
         let desc = TextureDesc { extent, ..texture.desc };
@@ -93,7 +87,7 @@ impl Handles {
         builder.kind(match pass.work {
             Work::Raster => PassKind::Raster,
             Work::Compute => PassKind::Compute,
-            Work::Copy => PassKind::Copy,
+            Work::Copy | Work::Upload => PassKind::Copy,
         })?;
         let attached = |texture: usize| pass.attachments.iter().any(|own| own.region.texture == texture);
         for own in pass.uses.iter().filter(|own| own.effect == Effect::Read) {

@@ -2,6 +2,7 @@
 
 use crate::standard::PostWorld;
 use bevy_app::{App, Plugin};
+use bevy_core_pipeline::tonemapping::tonemapping;
 use bevy_core_pipeline::upscaling::{ViewUpscalingPipeline, upscaling};
 use bevy_core_pipeline::{Core3d, Core3dSystems};
 use bevy_ecs::prelude::*;
@@ -32,7 +33,8 @@ type Declare = dyn Fn(&mut Frame<PostWorld>, &CameraTextures) -> Result<(), Stag
 /// this camera: spawn it with `Hdr` and `Tonemapping::None`, and without `Bloom` and `Fxaa`.
 ///
 /// The graph is compiled when its declarations change, and executed in `Core3dSystems::PostProcess` on Bevy's device,
-/// into Bevy's command encoder. If it fails, the error is logged, and [`Chains::error`] returns it.
+/// in a command buffer of its own. If it fails, its commands are not submitted, the error is logged, and
+/// [`Chains::error`] returns it.
 #[derive(Clone, Component, ExtractComponent)]
 #[extract_app(RenderApp)]
 pub struct GraphPost(Arc<Declare>);
@@ -68,7 +70,9 @@ impl Plugin for ExecutePlugin {
         let (Some(adapter), Some(device), Some(queue)) = resources else { return };
         let gpu = Gpu::wrap(adapter, device.wgpu_device(), queue);
         render.insert_resource(Chains { gpu, state: Mutex::default() });
-        render.add_systems(Core3d, run.in_set(Core3dSystems::PostProcess).before(upscaling));
+        // Depth of field, auto exposure and Bevy's other effects before tone mapping write the main texture.
+        let post = run.in_set(Core3dSystems::PostProcess).after(tonemapping).before(upscaling);
+        render.add_systems(Core3d, post);
         render.add_systems(
             Render,
             (skip_upscaling.in_set(RenderSystems::PrepareBindGroups), submitted.in_set(RenderSystems::Cleanup)),
@@ -135,7 +139,7 @@ fn run(view: ViewQuery<(&ViewTarget, &GraphPost)>, chains: Res<Chains>, mut cont
         return;
     }
     let textures = [target.main_texture(), output.texture()];
-    match chain.record(textures, post, context.command_encoder()) {
+    match chain.record(textures, post, &chains.gpu, &mut context) {
         Ok(()) => *error = None,
         Err(failed) => report(error, failed),
     }
@@ -146,7 +150,8 @@ impl Chain {
         &mut self,
         [main, output]: [&wgpu::Texture; 2],
         post: &GraphPost,
-        encoder: &mut wgpu::CommandEncoder,
+        gpu: &Gpu,
+        context: &mut RenderContext,
     ) -> Result<(), String> {
         let described = |texture: &wgpu::Texture| {
             let format = format_of(texture.format());
@@ -162,8 +167,14 @@ impl Chain {
             imports.texture(hdr, main).surface(target, output);
             (post.0)(frame, &CameraTextures { hdr, output: target, size })
         };
-        let recorded = self.frames.record_into(size, &self.world, encoder, declare);
+        // After an error, the encoder is dropped with what it recorded.
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("framegraph") });
+        let recorded = self.frames.record_into(size, &self.world, &mut encoder, declare);
         self.recorded = recorded.map_err(|error| error.to_string())?.is_some();
+        if self.recorded {
+            context.add_command_buffer(encoder.finish());
+        }
         self.world.next_frame();
         if self.frames.plan().steps().is_empty() {
             return Err("the chain draws nothing; add a pass that writes `CameraTextures::output`".into());

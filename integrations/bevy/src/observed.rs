@@ -2,14 +2,15 @@
 
 use framegraph::{Aspect, ClearValue, Entry, Exit, Extent, Format, Range, TextureDesc};
 
-/// A frame of a trace. Indices of rows refer to `textures` and `buffers`.
+/// A frame of a trace. Passes refer to rows of `textures` and `buffers` by index.
 #[derive(Clone, Debug, Default)]
 pub struct Observed {
-    /// Textures that the frame's passes use.
+    /// All textures that the trace created until the end of the next frame. [`uses`](Self::uses) selects the used ones.
     pub textures: Vec<ObservedTexture>,
-    /// Buffers that the GPU writes in this or the next frame. Other buffers are constant inputs.
+    /// All buffers that the trace created until the end of the next frame. Passes refer only to buffers that the GPU
+    /// writes in this or the next frame. Other buffers are constant inputs.
     pub buffers: Vec<ObservedBuffer>,
-    /// Passes in the order of submission. Each dispatch and each copy is a pass.
+    /// Passes in the order of submission. Each dispatch and each copy is a pass, and consecutive uploads are one pass.
     pub passes: Vec<ObservedPass>,
     /// Index of the texture in which the camera's picture ends.
     pub output: Option<usize>,
@@ -18,6 +19,14 @@ pub struct Observed {
 }
 
 impl Observed {
+    /// Returns whether a pass of the frame attaches, binds or copies a texture.
+    pub fn uses(&self, texture: usize) -> bool {
+        let bound = |own: &Use| matches!(own.of, Used::Texture(region) if region.texture == texture);
+        self.passes
+            .iter()
+            .any(|pass| pass.uses.iter().any(bound) || pass.attachments.iter().any(|own| own.region.texture == texture))
+    }
+
     /// Returns width and height of the output, or 1×1 if no output was marked.
     pub fn frame_size(&self) -> [u32; 2] {
         let output = self.output.and_then(|output| self.textures.get(output));
@@ -54,20 +63,22 @@ pub enum Work {
     Raster,
     /// One dispatch of a compute pass.
     Compute,
-    /// A copy, or an upload by the CPU.
+    /// A copy by the GPU.
     Copy,
+    /// A write by the CPU.
+    Upload,
 }
 
-/// A render pass, dispatch or copy.
+/// A render pass, dispatch, copy or upload.
 #[derive(Clone, Debug)]
 pub struct ObservedPass {
     /// The label.
     pub name: String,
-    /// Render pass, dispatch or copy.
+    /// Render pass, dispatch, copy or upload.
     pub work: Work,
     /// Attachments of a render pass.
     pub attachments: Vec<ObservedAttachment>,
-    /// Bindings and copies, without duplicates.
+    /// Bindings, copies and uploads, without duplicates.
     pub uses: Vec<Use>,
     /// Number of recorded draws; an indirect draw counts once.
     pub draws: u32,

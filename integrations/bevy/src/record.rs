@@ -174,15 +174,19 @@ impl Recorder {
     }
 
     fn copy(&mut self, name: &str, copied: impl IntoIterator<Item = Copied>) {
-        let uses = copied.into_iter().filter_map(|(of, effect)| Some(Use { of: of?, binding: Binding::Copy, effect }));
-        let uses: Vec<Use> = uses.collect();
-        if uses.iter().any(|used| used.effect != Effect::Read) {
-            self.push(name.into(), Work::Copy, uses);
-        }
+        self.push_copy(name, Work::Copy, copied);
     }
 
     fn upload(&mut self, to: Copied) {
-        self.copy("upload", [to]);
+        self.push_copy("upload", Work::Upload, [to]);
+    }
+
+    fn push_copy(&mut self, name: &str, work: Work, copied: impl IntoIterator<Item = Copied>) {
+        let uses = copied.into_iter().filter_map(|(of, effect)| Some(Use { of: of?, binding: Binding::Copy, effect }));
+        let uses: Vec<Use> = uses.collect();
+        if uses.iter().any(|used| used.effect != Effect::Read) {
+            self.push(name.into(), work, uses);
+        }
     }
 
     fn buffer_read(&self, id: usize) -> Copied {

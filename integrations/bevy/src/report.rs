@@ -189,8 +189,7 @@ fn recorded(frame: &Observed) -> Recorded {
         }
     }
     let transient = frame.textures.iter().enumerate().filter(|(index, texture)| {
-        let own = |pass: &ObservedPass| pass.attachments.iter().any(|a| a.region.texture == *index);
-        texture.entry == framegraph::Entry::Undefined && texture.exit == Exit::Discard && frame.passes.iter().any(own)
+        texture.entry == framegraph::Entry::Undefined && texture.exit == Exit::Discard && frame.uses(*index)
     });
     sum.transient_bytes = transient.map(|(_, texture)| texture.desc.bytes([1, 1])).sum();
     sum

@@ -90,7 +90,7 @@ impl Device {
         Ok(Self { adapter, device, queue, instance })
     }
 
-    /// Returns the setting `RenderPlugin::render_creation` with which Bevy renders on this device.
+    /// Returns the value of `RenderPlugin::render_creation` that makes Bevy render on this device.
     pub fn render_creation(&self) -> RenderCreation {
         RenderCreation::manual(
             RenderDevice::from(self.device.clone()),

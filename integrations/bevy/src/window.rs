@@ -60,7 +60,7 @@ fn frame_of(recorder: Recorder, [own, next]: [Vec<ObservedPass>; 2], left_out: V
             texture.exit = Exit::Keep;
         }
     }
-    keep_used(&mut frame, &next);
+    simplify(&mut frame, &next);
     frame
 }
 
@@ -97,10 +97,11 @@ fn contents(passes: &[ObservedPass]) -> (HashSet<usize>, HashSet<usize>) {
     (needed, touched)
 }
 
-/// Drops unused textures, buffers that only the CPU writes, and uploads of these.
-fn keep_used(frame: &mut Observed, next: &[ObservedPass]) {
-    let gpu_writes = |pass: &ObservedPass| pass.name != "upload";
-    let written = frame.passes.iter().chain(next).filter(|pass| gpu_writes(pass)).flat_map(|pass| &pass.uses);
+/// Drops uses of buffers that only the CPU writes, and passes that are left without uses. Joins uploads, and makes names
+/// unique.
+fn simplify(frame: &mut Observed, next: &[ObservedPass]) {
+    let by_gpu = frame.passes.iter().chain(next).filter(|pass| pass.work != Work::Upload);
+    let written = by_gpu.flat_map(|pass| &pass.uses);
     let written = written.filter(|own| own.effect != Effect::Read);
     let written: HashSet<usize> = written.filter_map(buffer_of).collect();
     for pass in &mut frame.passes {
@@ -118,12 +119,12 @@ fn keep_used(frame: &mut Observed, next: &[ObservedPass]) {
     }
 }
 
-/// Joins uploads that follow each other and have different targets.
+/// Joins consecutive uploads into one pass. A target that is uploaded again keeps the effect of its first upload.
 fn join_uploads(passes: &mut Vec<ObservedPass>) {
     let mut joined: Vec<ObservedPass> = Vec::with_capacity(passes.len());
     for pass in passes.drain(..) {
         match joined.last_mut() {
-            Some(last) if last.name == "upload" && pass.name == "upload" => {
+            Some(last) if last.work == Work::Upload && pass.work == Work::Upload => {
                 let new = |own: &&Use| !last.uses.iter().any(|known| known.of == own.of);
                 let new: Vec<Use> = pass.uses.iter().filter(new).copied().collect();
                 last.uses.extend(new);

@@ -4,8 +4,9 @@
 mod support;
 
 use framegraph::file::GraphFile;
-use framegraph::{Caps, Options, Plan, Scratch, compile};
+use framegraph::{Caps, ClearValue, Intent, Options, Plan, Scratch, compile};
 use framegraph_bevy::{Chains, Device, GraphPost, Report, ReportPlugin};
+use framegraph_wgpu::RecordError;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use support::Scene;
@@ -128,5 +129,33 @@ fn an_empty_chain_is_an_error() -> Result<(), Box<dyn Error>> {
     scene.world().entity_mut(camera).insert(works);
     scene.frames(&device, 2);
     assert_eq!(scene.render().resource::<Chains>().error(), None);
+    Ok(())
+}
+
+/// A chain that fails while it is recorded changes no texel, and Bevy's commands of the frame are submitted.
+#[test]
+fn a_chain_that_fails_is_not_submitted() -> Result<(), Box<dyn Error>> {
+    let device = Device::open(None)?;
+    let mut scene = SMALL.executed(&device, false);
+    scene.frames(&device, 3);
+    let before = scene.picture(&device);
+    let camera = scene.camera();
+    for fails in [true, false] {
+        scene.world().entity_mut(camera).insert(GraphPost::new(move |frame, camera| {
+            let clear = Intent::Clear(ClearValue::BLACK);
+            let black = frame.add_fn("black", |pass| pass.color(camera.output, clear), |_, _, _| Ok(()))?;
+            let record = move |_: &_, _: &_, _: &mut framegraph_wgpu::Cx<'_>| match fails {
+                true => Err(RecordError::custom(std::io::Error::other("expected by the test"))),
+                false => Ok(()),
+            };
+            frame.add_fn("fails", |pass| pass.color(black, Intent::Modify), record)?;
+            Ok(())
+        }));
+        scene.frames(&device, 3);
+        let error = scene.render().resource::<Chains>().error();
+        assert_eq!(error.is_some_and(|error| error.contains("expected by the test")), fails);
+        // Control: the same chain without the error draws.
+        assert_eq!(scene.picture(&device) == before, fails);
+    }
     Ok(())
 }

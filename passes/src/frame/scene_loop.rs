@@ -244,7 +244,7 @@ impl SceneLoop {
             (None, Screen::Window(_)) => return Ok(false),
         };
         let seen = &world.views.get(ViewId::MAIN)?.view;
-        let moving = settings.moving || (0..scene.instances.len()).any(|instance| seen.moves(instance));
+        let moving = settings.moving || !seen.motions.is_empty();
         let settings = Settings { moving, ..settings.for_scene(scene, settings.drawn_px(view.size_px)) };
         let format = format_of(texture.format()).unwrap_or(Format::Rgba8UnormSrgb);
         let ran = frames.run(view.size_px, world, |frame, imports| {

@@ -77,7 +77,8 @@ impl Section {
 
 impl FrameSettings {
     /// Sets an effect by its option, such as `ao` to `gtao:slices=4`, or a field of the frame by its key, such as `msaa`
-    /// to `4`. The texts are those of the program `render`.
+    /// to `4`. The texts are those of settings tables ([`sections`]). A field of an effect without an option turns the effect
+    /// on, with its defaults.
     ///
     /// # Errors
     /// Fails for an unknown option or an invalid value; the message names the accepted ones.
@@ -89,17 +90,18 @@ impl FrameSettings {
         match rows.clone().find(|row| row.key == option) {
             Some(row) => row.set(self, text),
             None => {
-                Err(unknown(option, sections().iter().map(|section| section.option).chain(rows.map(|row| row.key))))
+                let options = sections().iter().map(|section| section.option);
+                Err(unknown(option, options.filter(|option| !option.is_empty()).chain(rows.map(|row| row.key))))
             }
         }
     }
 }
 
 impl Row {
-    /// Sets the value in a frame from text.
+    /// Sets the value in a frame from text. An effect that is off is turned on, with its defaults.
     ///
     /// # Errors
-    /// Fails for an invalid value, or if the frame lacks the field; the message names the accepted values.
+    /// Fails for an invalid value; the message names the accepted ones.
     pub fn set(&self, frame: &mut FrameSettings, text: &str) -> Result<(), OptionError> {
         (self.set)(frame, text)
     }
@@ -214,7 +216,12 @@ fn row<S: SettingsTable>(field: &'static Field<S>, at: At<S>) -> Row {
         alternatives: field.alternatives(&of),
         range: field.range(&of),
         frame,
-        set: Box::new(move |frame, text| at.find(frame).map_or(Ok(()), |settings| field.set(settings, text))),
+        set: Box::new(move |frame, text| {
+            let mut own = at.find(frame).map_or(S::DEFAULT, |own| *own);
+            field.set(&mut own, text)?;
+            at.put(frame, own);
+            Ok(())
+        }),
         check: Box::new(move |frame| at.find(&mut { *frame }).and_then(|settings| field.wrong(settings))),
     }
 }

@@ -74,9 +74,9 @@ impl Piece {
     }
 }
 
-/// Returns true if f32 holds the difference of the points well. Fails for unknown points.
+/// Returns true if f32 holds the difference of the points well, and false for coordinates that are not finite.
 fn is_close(origin: DVec3, reference: DVec3) -> bool {
-    (origin - reference).abs().max_element() <= REACH_M
+    (origin - reference).abs().cmple(DVec3::splat(REACH_M)).all()
 }
 
 /// View-independent transforms of instances, in pieces that are shared until they change. A buffer filled with an
@@ -128,6 +128,11 @@ impl Placements {
     pub(crate) fn release(&mut self) {
         let none = Arc::default();
         self.0.iter_mut().for_each(|piece| piece.objects = Arc::clone(&none));
+    }
+
+    /// Returns true if the data for shaders was dropped.
+    pub(crate) fn is_released(&self) -> bool {
+        self.0.first().is_some_and(|piece| piece.objects.len() < piece.world_from_model.len())
     }
 
     /// Returns the shader data of an instance, which must not be released.
@@ -186,6 +191,21 @@ mod tests {
         assert_ne!(now.0[1].objects[3], before.0[1].objects[3]);
         assert_eq!(now.changed_since(&Placements::default()).count(), 3);
         assert_eq!(now.count(), scene.instances.len());
+    }
+
+    /// A place that is unknown has no effect on the other instances of its piece.
+    #[test]
+    fn unknown_places_stay_alone() {
+        let mut scene = Scene { materials: vec![framegraph_scene::Material::default()], ..Scene::default() };
+        let placed = |x: f64| DMat4::from_translation(DVec3::new(x, 1.0, 2.0));
+        let instance = |x| Instance::new("", MeshId::new(0), MaterialId::new(0), placed(x), &Aabb::EMPTY);
+        for unknown in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            scene.instances = (0..2 * CHUNK).map(|i| instance(if i == CHUNK - 1 { unknown } else { 3.0 })).collect();
+            let prepared = PreparedScene::new(&scene);
+            let object = prepared.placements().object(5);
+            let reference = prepared.reference_points()[object.reference_point as usize];
+            assert_eq!(reference.x + f64::from(object.world_from_model.w_axis.x), 3.0, "{unknown}");
+        }
     }
 
     /// Reference point and translation add up to the origin, for instances close together, far apart, and after moves.

@@ -15,7 +15,7 @@ mod stereo;
 pub use gpu::{GpuView, ViewId, Views};
 
 use crate::gpu_scene::draws::ViewDraws;
-use crate::gpu_scene::placements::Placements;
+use crate::gpu_scene::placements::{CHUNK, Placements};
 use crate::gpu_scene::prepared::PreparedScene;
 use crate::gpu_scene::previous_view::PreviousView;
 use crate::gpu_scene::punctual;
@@ -119,7 +119,7 @@ impl BackgroundUniforms {
 }
 
 /// Maximum number of instances of a scene for streamed objects ([`CameraView::streams_objects`]).
-pub const MAX_STREAMED: usize = 1024;
+pub const MAX_STREAMED: usize = CHUNK;
 
 /// One view of one frame, on the CPU.
 #[derive(Clone, Debug)]

@@ -132,7 +132,8 @@ impl Controller {
         self.change(to, ms, None);
     }
 
-    /// Enters the finest level that fits, if `high`, the fourth-largest time, allows it. Three outliers have no effect.
+    /// Enters the finest level that fits, if `high` allows it: the median plus twice the distance from it to the
+    /// fourth-largest time. Three outliers have no effect.
     fn rise(&mut self, median: f64, high: f64) {
         let slope = self.slope(median, false);
         let own = self.costs[self.level];

@@ -7,7 +7,7 @@
 use super::groups::{FrameOption, Group};
 use super::measured::Choices;
 use super::select::Offers;
-use crate::feature_culling::{Decision, Effect, EffectSet, Facts, Proof};
+use crate::feature_culling::{Decision, Effect, EffectSet, Fact, Facts, Proof};
 use crate::frame::Settings;
 use crate::frame::frame_settings::FrameSettings;
 use crate::grading::GradeBy;
@@ -26,7 +26,8 @@ pub struct StepBound {
 /// Chosen set with its proof.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guaranteed {
-    /// Index of the option in each group.
+    /// Index of the option in each group. Without a row in `bounds`, it is the finest of the choices, and
+    /// [`Guaranteed::apply`] keeps the option of the reference.
     pub options: Vec<usize>,
     /// Predicted time of a frame, in ms; it is not proved.
     pub ms: f64,
@@ -34,6 +35,17 @@ pub struct Guaranteed {
     pub steps: f64,
     /// Name of the group and of the option, and its bound, for each option that is not the reference's.
     pub bounds: Vec<(&'static str, &'static str, StepBound)>,
+}
+
+impl Guaranteed {
+    /// Changes the reference to the chosen frame: applies the options that have a proof, and no others.
+    pub fn apply(&self, reference: &mut FrameSettings) {
+        for (group, option, _) in &self.bounds {
+            if let Some(option) = Group::of(group).and_then(|group| group.option(option)) {
+                (option.apply)(reference);
+            }
+        }
+    }
 }
 
 /// Largest rounding, in 8-bit steps, that a bound leaves out: both pictures are rounded to the nearest step.
@@ -47,6 +59,9 @@ pub const ROUNDING_STEPS: f64 = 1.0;
 ///   ([`Proof::Exact`]: 0, [`Proof::Variant`]: 1, [`Proof::Codes`]). Only effects that differ between the frames are
 ///   dropped. Drops with other kinds of bounds are no proof.
 /// - Only the format of radiance differs ([`rounding_steps`]).
+///
+/// The bound holds with and without feature culling of both frames. If culling drops an effect from only one of them, the
+/// bound of this drop is added, or there is no proof.
 ///
 /// `facts` runs feature culling on settings, where the effects of the set are always kept.
 pub fn bound(
@@ -65,7 +80,9 @@ pub fn bound(
     if other == formats
         && let Some(steps) = rounding_steps(&frame.settings, other.settings.hdr_format)
     {
-        return Some(StepBound { steps, proof: "rounding of radiance before a linear tone curve".into() });
+        let mut reasons = vec!["rounding of radiance before a linear tone curve".into()];
+        let culled = culled_steps([&frame.settings, &other.settings], [EffectSet::NONE; 2], facts, &mut reasons)?;
+        return Some(StepBound { steps: steps + culled, proof: reasons.join("; ") });
     }
     if other != (FrameSettings { settings: other.settings, ..*frame }) {
         return None;
@@ -84,15 +101,59 @@ pub fn bound(
         let own = facts(settings, kept);
         for row in own.rows.iter().filter(|row| row.decision == Decision::Dropped) {
             steps += drop_steps(row.proof).unwrap_or(f64::INFINITY);
-            let reason = format!("{} [{}]: {}", row.effect.name(), row.proof, row.reason);
-            if !reasons.contains(&reason) {
-                reasons.push(reason);
+            add(&mut reasons, row);
+        }
+        (own.apply(settings), own.dropped())
+    };
+    let [(ours, dropped), (theirs, also)] = [reduced(&frame.settings), reduced(&other.settings)];
+    if ours != theirs || !steps.is_finite() {
+        return None;
+    }
+    steps += culled_steps([&frame.settings, &other.settings], [dropped, also], facts, &mut reasons)?;
+    Some(StepBound { steps, proof: reasons.join("; ") })
+}
+
+/// Adds the reason of a drop.
+fn add(reasons: &mut Vec<String>, row: &Fact) {
+    let reason = format!("{} [{}]: {}", row.effect.name(), row.proof, row.reason);
+    if !reasons.contains(&reason) {
+        reasons.push(reason);
+    }
+}
+
+/// Returns a bound, in 8-bit steps, on how much feature culling moves two frames apart; `None` if there is no proof.
+///
+/// A drop may depend on an option: radiance is stored in 8 bits only if no effect reads it. A drop from both frames
+/// leaves the same settings, so the frames move apart only by drops from one of them. `counted` are drops that are
+/// already part of the bound. There is no proof if both frames keep different amounts of an effect.
+fn culled_steps(
+    frames: [&Settings; 2],
+    counted: [EffectSet; 2],
+    facts: &mut impl FnMut(&Settings, EffectSet) -> Facts,
+    reasons: &mut Vec<String>,
+) -> Option<f64> {
+    let culled = frames.map(|settings| facts(settings, EffectSet::NONE));
+    let mut steps = 0.0;
+    for effect in Effect::ALL {
+        let is_dropped = |row: &&Fact| row.decision == Decision::Dropped;
+        let rows = [0, 1].map(|at| culled[at].of(effect).filter(is_dropped));
+        if let [Some(_), Some(_)] = rows {
+            let kept = Effect::ALL.into_iter().filter(|other| *other != effect).collect();
+            let [ours, theirs] =
+                [0, 1].map(|at| Settings { measure: frames[0].measure, ..culled[at].apply_but(frames[0], kept) });
+            if ours != theirs {
+                return None;
+            }
+            continue;
+        }
+        for (row, counted) in rows.into_iter().zip(counted) {
+            if let Some(row) = row.filter(|_| !counted.contains(effect)) {
+                steps += drop_steps(row.proof)?;
+                add(reasons, row);
             }
         }
-        own.apply(settings)
-    };
-    let equal = reduced(&frame.settings) == reduced(&other.settings);
-    equal.then(|| StepBound { steps, proof: reasons.join("; ") }).filter(|bound| bound.steps.is_finite())
+    }
+    Some(steps)
 }
 
 /// Returns the bound of a drop in 8-bit steps; `None` if it is of another kind.
@@ -112,10 +173,15 @@ fn drop_steps(proof: Proof) -> Option<f64> {
 /// rounded when it is stored, and again when samples are resolved, in both formats: the share is at most
 /// `ε = 1 − (1 − 2^−m)² (1 − 2^−10)²`, where `m = 5` for the blue channel of `Rg11b10Ufloat`. Exposure and vignette are
 /// factors, and a linear tone curve clamps each channel to 0…1, so the share remains. The sRGB encoding `E` is
-/// concave with a linear toe, so `E(x) − E(x (1 − ε))` is largest at `x = 1`. Values below 2^−14 are
-/// rounded to multiples of 2^−19, at a slope of 12.92.
+/// concave with a linear toe, so `E(x) − E(x (1 − ε))` is largest at `x = 1`.
+///
+/// Values below 2^−14 are rounded to multiples of 2^−19, or of 2^−24 as half floats, twice each. Together they change by at
+/// most `δ = 2^−18 + 2^−23` more. Exposure compensation multiplies stored values, and therefore also `δ`, by `2^EV`.
+/// Vignette only darkens. So `x` changes to at least `x (1 − ε) − δ 2^EV`. The slope of `E` is at most 12.92, so the picture
+/// changes by at most `E(1) − E(1 − ε) + 12.92 δ 2^EV`. Factors below 1 are not used.
 ///
 /// Excluded are blended surfaces, which round once each, and effects that read the stored radiance or detect edges.
+/// Weights of a tone-mapped resolve and separate post-processing passes also round, and are excluded.
 pub fn rounding_steps(settings: &Settings, format: Format) -> Option<f64> {
     let post = &settings.post;
     let linear = post.look.tone_map == ToneMap::Linear
@@ -130,6 +196,8 @@ pub fn rounding_steps(settings: &Settings, format: Format) -> Option<f64> {
         || settings.reflections.is_some()
         || settings.upscale.is_some()
         || settings.scene_levels > 0
+        || settings.tone_resolve
+        || settings.split_post
         || settings.stored.is_some();
     let known = [settings.hdr_format, format].iter().all(|f| matches!(f, Format::Rg11b10Ufloat | Format::Rgba16Float));
     if !linear || reads || settings.blended || settings.fxaa || !known {
@@ -137,15 +205,17 @@ pub fn rounding_steps(settings: &Settings, format: Format) -> Option<f64> {
     }
     let kept = (1.0 - 2.0_f64.powi(-5)).powi(2) * (1.0 - 2.0_f64.powi(-10)).powi(2);
     let encoded = 1.055 * kept.powf(1.0 / 2.4) - 0.055;
-    Some(255.0 * (1.0 - encoded + 12.92 * 2.0_f64.powi(-18)))
+    let brightened = f64::from(post.compensation_ev).max(0.0).exp2();
+    let small = (2.0_f64.powi(-18) + 2.0_f64.powi(-23)) * brightened;
+    Some(255.0 * (1.0 - encoded + 12.92 * small))
 }
 
 /// Chooses the fastest set whose error is proved to be at most `max_steps` 8-bit steps from `reference`. Times are those of
 /// `offers`; its errors are ignored. The reference is always possible, with a bound of 0.
 ///
 /// Each bound is derived alone, and the set is chosen by the sums. Then bounds are derived again one after
-/// the other, each for the frame with the options before it. An option that fails there is replaced by that of
-/// the reference.
+/// the other, each for the frame with the options before it. An option that fails there has no row in
+/// [`Guaranteed::bounds`], and the reference's option remains.
 pub fn guaranteed(
     reference: &FrameSettings,
     choices: &Choices,
@@ -219,6 +289,41 @@ mod tests {
         let found = sum(2.0);
         assert_eq!((found.steps, found.bounds.len(), found.bounds[0].1), (2.0, 1, "none"), "{found:?}");
         assert_eq!((sum(1.9).steps, sum(1.9).bounds), (0.0, Vec::new()), "rounding is not forgotten");
+        let mut frame = finest;
+        found.apply(&mut frame);
+        assert_eq!(frame.settings, Settings { occlusion: None, ..finest.settings });
+        // Choices without the finest options: no proof is found for the others, and they are not applied.
+        let fewer: Choices = GROUPS.iter().map(|group| (group, vec![&group.options[0]])).collect();
+        let groups = GROUPS.iter().map(|_| vec![Offer { ms: 1.0, squares: 0.0 }]).collect();
+        let offers = Offers { groups, pairs: Vec::new(), fastest_ms: 1.0 };
+        let none = guaranteed(&finest, &fewer, &offers, 0.5, &mut culled);
+        let mut frame = finest;
+        none.apply(&mut frame);
+        assert_eq!((none.bounds, frame), (Vec::new(), finest));
+    }
+
+    /// Culls the HDR target only if no effect reads radiance, as in an unlit scene.
+    #[test]
+    fn drops_from_only_one_frame_are_counted_or_no_proof() {
+        let finest = reference(&FrameSettings::DEFAULT);
+        let group = Group::of("reflections").expect("a group");
+        let of = |proof: Proof| {
+            let mut facts = |settings: &Settings, kept: EffectSet| {
+                let row = |effect, unneeded, proof| {
+                    let dropped = unneeded && !kept.contains(effect);
+                    let decision = if dropped { Decision::Dropped } else { Decision::Kept };
+                    Fact { effect, decision, proof, reason: "none".into() }
+                };
+                let reads = settings.reflections.is_some();
+                let mut facts = Facts::default();
+                facts.rows.extend(reads.then(|| row(Effect::Reflections, true, Proof::Exact)));
+                facts.rows.push(row(Effect::HdrTarget, !reads, proof));
+                facts
+            };
+            bound(&finest, group, &group.options[0], &mut facts).map(|bound| bound.steps)
+        };
+        assert_eq!(of(Proof::Codes(1.0)), Some(1.0));
+        assert_eq!(of(Proof::Edges), None);
     }
 
     #[test]
@@ -228,6 +333,11 @@ mod tests {
         settings.post.look.tone_map = ToneMap::Linear;
         let steps = rounding_steps(&settings, Format::Rg11b10Ufloat);
         assert!(steps.is_some_and(|steps| (7.0..8.0).contains(&steps)), "{steps:?}");
+        settings.post.compensation_ev = -3.0;
+        assert_eq!(rounding_steps(&settings, Format::Rg11b10Ufloat), steps);
+        settings.post.compensation_ev = 10.0;
+        let brightened = rounding_steps(&settings, Format::Rg11b10Ufloat);
+        assert!(brightened.is_some_and(|steps| (20.0..22.0).contains(&steps)), "{brightened:?}");
         settings.blended = true;
         assert_eq!(rounding_steps(&settings, Format::Rg11b10Ufloat), None);
     }

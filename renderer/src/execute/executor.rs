@@ -282,7 +282,11 @@ impl Executor {
         self.recording.took_in_wgpu(begun);
         executed(&span, plan);
         match (ran, caught) {
-            (ran, Ok(())) => ran,
+            (Ok(commands), Ok(())) => Ok(commands),
+            (Err(said), Ok(())) => {
+                self.end_loans();
+                Err(said)
+            }
             (Err(said), Err(error)) => {
                 self.discard_frame();
                 Err(if is_consequence(&said, &error) { self.execute_error(plan, error) } else { said })

@@ -1,13 +1,12 @@
 //! Threads of a connection: one reads the requests of the viewer, the other sends.
 
 use super::error::RemoteError;
-use super::mailbox::{Mailbox, count};
+use super::mailbox::{Mailbox, Requested, count};
 use super::message::{FromEngine, FromViewer};
 use super::wire::{self, MAX_ANSWER_BYTES, MAX_REQUEST_BYTES, PATIENCE, Timed};
 use std::io::Write;
 use std::net::{Shutdown, TcpStream};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// Maximum time to read the rest of a refused peer.
@@ -17,11 +16,11 @@ const LINGER: Duration = Duration::from_millis(500);
 pub(super) fn serve(stream: &TcpStream, viewer: usize, engine: &str, mailbox: &Arc<Mailbox>) {
     let ended = begin(stream, engine).and_then(|()| {
         count(&mailbox.counters.accepted);
-        attach(mailbox, viewer, true);
+        let connection = mailbox.attach(viewer);
         let sender = start_sender(stream, viewer, engine, mailbox);
         let ended = sender.and_then(|sender| {
-            let ended = requests(stream, viewer, mailbox);
-            attach(mailbox, viewer, false);
+            let ended = requests(stream, (viewer, connection), mailbox);
+            mailbox.detach(viewer);
             if ended.is_ok() {
                 // The sender may be blocked while it writes.
                 let _ = stream.shutdown(Shutdown::Both);
@@ -29,7 +28,7 @@ pub(super) fn serve(stream: &TcpStream, viewer: usize, engine: &str, mailbox: &A
             let _ = sender.join();
             ended
         });
-        attach(mailbox, viewer, false);
+        mailbox.detach(viewer);
         ended
     });
     if let Err(error) = ended {
@@ -68,19 +67,8 @@ fn begin(stream: &TcpStream, engine: &str) -> Result<(), RemoteError> {
     wire::write(&mut writer, &FromEngine::Welcome { engine: engine.into() }, MAX_ANSWER_BYTES)
 }
 
-/// Marks a viewer as attached or not.
-fn attach(mailbox: &Mailbox, viewer: usize, attached: bool) {
-    mailbox.request(viewer, None);
-    let mut outbox = mailbox.outbox();
-    outbox.attached[viewer] = attached;
-    let viewers = outbox.attached.iter().filter(|attached| **attached).count();
-    drop(outbox);
-    mailbox.viewers.store(viewers, Ordering::Release);
-    mailbox.wake();
-}
-
 /// Reads requests until the connection ends. Returns `Ok` if the viewer closed it between two messages.
-fn requests(stream: &TcpStream, viewer: usize, mailbox: &Mailbox) -> Result<(), RemoteError> {
+fn requests(stream: &TcpStream, (viewer, connection): (usize, u64), mailbox: &Mailbox) -> Result<(), RemoteError> {
     loop {
         // A viewer may be silent between two messages, but not within one.
         stream.set_read_timeout(None).map_err(|error| wire::broken(&error))?;
@@ -88,7 +76,7 @@ fn requests(stream: &TcpStream, viewer: usize, mailbox: &Mailbox) -> Result<(), 
             return Ok(());
         }
         let FromViewer::Texture(request) = wire::read(&mut Timed::new(stream, PATIENCE), MAX_REQUEST_BYTES)?;
-        mailbox.request(viewer, Some(request));
+        mailbox.request(Requested { viewer, connection, request });
     }
 }
 
@@ -100,9 +88,6 @@ fn start_sender(
     mailbox: &Arc<Mailbox>,
 ) -> Result<std::thread::JoinHandle<()>, RemoteError> {
     let (stream, mailbox) = (stream.try_clone().map_err(|error| wire::broken(&error))?, mailbox.clone());
-    // Answers to an earlier viewer with this index.
-    let mut of_texture = 0;
-    mailbox.outbox().textures[viewer].newer(&mut of_texture);
     let engine = engine.to_owned();
     let send = move || {
         let (mut of_plan, mut of_times) = (0, 0);
@@ -113,7 +98,7 @@ fn start_sender(
             }
             let plan = outbox.plan.newer(&mut of_plan);
             let times = outbox.times.newer(&mut of_times);
-            let texture = outbox.textures[viewer].newer(&mut of_texture);
+            let texture = outbox.textures[viewer].take();
             if plan.is_none() && times.is_none() && texture.is_none() {
                 mailbox.wait(outbox);
                 continue;
@@ -121,7 +106,7 @@ fn start_sender(
             drop(outbox);
             let plan = plan.map(|plan| FromEngine::Plan(Box::new(plan.message(&engine).clone())));
             let times = times.map(|times| FromEngine::Times((*times).clone()));
-            let texture = texture.map(|texture| FromEngine::Texture((*texture).clone()));
+            let texture = texture.map(FromEngine::Texture);
             for message in [plan, times, texture].into_iter().flatten() {
                 // A plan that exceeds the limit of a message is not sent.
                 let Ok(bytes) = wire::encode(&message, MAX_ANSWER_BYTES) else { continue };

@@ -1,7 +1,7 @@
 //! The server: accepts viewers, and takes data from the frame without waiting.
 
 use super::error::RemoteError;
-use super::mailbox::{MAX_VIEWERS, Mailbox, OfferedPlan, RemoteCounts};
+use super::mailbox::{MAX_VIEWERS, Mailbox, RemoteCounts};
 use super::message::{FrameSample, StepSample};
 use super::peer;
 use super::textures::Textures;
@@ -32,6 +32,10 @@ pub struct Server {
     thread: Option<std::thread::JoinHandle<()>>,
     textures: Textures,
     frame: u64,
+    /// A viewer was attached in the last frame.
+    attached: bool,
+    /// Number of times that the last viewer left, as the last frame saw it.
+    session: u64,
     /// Compilation of the plan that was offered last.
     offered: u64,
     times_at: Option<Instant>,
@@ -62,6 +66,8 @@ impl Server {
             thread: Some(thread),
             textures: Textures::default(),
             frame: 0,
+            attached: false,
+            session: 0,
             offered: 0,
             times_at: None,
             plan_at: None,
@@ -82,10 +88,13 @@ impl Server {
     /// Offers plan and times of the last frame of a loop to the viewers, and reads requested textures. Never waits.
     ///
     /// While a viewer is attached, step times are measured ([`Executor::set_timing`]). Frames of [`FrameLoop::run_for`]
-    /// are not offered.
+    /// and frames that failed are not offered.
     pub fn after_frame<W: ?Sized>(&mut self, frames: &mut FrameLoop<W>, world: &W) {
+        let has_executed = frames.has_executed();
         let (executor, plan, frame, imports) = frames.parts_mut();
-        self.after(executor, plan, frame, world, imports);
+        if self.begin(executor) && has_executed {
+            self.offer((executor, plan, frame, world, imports));
+        }
     }
 
     /// Offers an executed frame like [`Server::after_frame`], for engines without a [`FrameLoop`].
@@ -97,18 +106,42 @@ impl Server {
         world: &W,
         imports: &Imports,
     ) {
+        if self.begin(executor) && plan.compilation() > 0 {
+            self.offer((executor, plan, frame, world, imports));
+        }
+    }
+
+    /// Counts a frame, and returns whether a viewer is attached.
+    fn begin(&mut self, executor: &mut Executor) -> bool {
         self.frame += 1;
         let attached = self.mailbox.viewers.load(Ordering::Acquire) > 0;
         if attached != self.measures {
             self.toggle_timing(executor, attached);
         }
-        if !attached || plan.compilation() == 0 {
-            return;
+        if self.attached && !attached {
+            self.textures.reset();
         }
+        self.attached = attached;
+        if attached {
+            // The plan of an earlier session is not kept. Viewers can leave and others attach between two frames. The
+            // minimum times still hold, so that a viewer that attaches again and again costs no more.
+            let session = self.mailbox.sessions.load(Ordering::Acquire);
+            if std::mem::replace(&mut self.session, session) != session {
+                self.offered = 0;
+            }
+        }
+        attached
+    }
+
+    /// Offers an executed frame to the attached viewers.
+    fn offer<W: ?Sized>(
+        &mut self,
+        (executor, plan, frame, world, imports): (&mut Executor, &Plan, &Frame<W>, &W, &Imports),
+    ) {
         let now = Instant::now();
         let due = |last: Option<Instant>| last.is_none_or(|last| now.duration_since(last) >= INTERVAL);
         let changed = self.offered != plan.compilation();
-        if changed && due(self.plan_at) && self.mailbox.offer_plan(OfferedPlan::new(plan)) {
+        if changed && due(self.plan_at) && self.mailbox.offer_plan(plan) {
             (self.offered, self.plan_at) = (plan.compilation(), Some(now));
         }
         if due(self.times_at) && self.mailbox.offer_times(sample(executor, plan, self.frame)) {
@@ -170,11 +203,13 @@ fn accept(listener: &TcpListener, mailbox: &Arc<Mailbox>, streams: &Arc<Streams>
             std::thread::sleep(INTERVAL);
             continue;
         };
+        // A slot is free if it has no stream. Without a copy, two connections would get one slot.
+        let Ok(copy) = stream.try_clone() else { continue };
         let viewer = {
             let mut open = streams.lock().unwrap_or_else(PoisonError::into_inner);
             let free = open.iter().position(Option::is_none);
             if let Some(free) = free {
-                open[free] = stream.try_clone().ok();
+                open[free] = Some(copy);
             }
             free
         };

@@ -1,11 +1,11 @@
 //! Textures on demand: one at a time, read without waiting.
 
-use super::mailbox::Mailbox;
+use super::mailbox::{Mailbox, Requested};
 use super::message::{RemoteTexture, TextureRequest};
 use super::wire::MAX_ANSWER_BYTES;
 use crate::execute::executor::Executor;
 use crate::frame::Frame;
-use crate::inspect::{Inspection, Inspector, Request, Started, find};
+use crate::inspect::{Arrived, Inspector, Request, Started, find};
 use crate::resources::imports::Imports;
 use framegraph::Plan;
 use std::time::{Duration, Instant};
@@ -22,16 +22,21 @@ type Inspected<'f, W> = (&'f Executor, &'f Plan, &'f Frame<W>, &'f W, &'f Import
 #[derive(Debug, Default)]
 pub(super) struct Textures {
     inspector: Option<Inspector>,
-    /// Viewer, number of its request, and the readback.
-    reading: Option<(usize, u32, Started)>,
-    /// Answer that could not be offered yet.
-    answer: Option<(usize, RemoteTexture)>,
+    /// Request, and its readback.
+    reading: Option<(Requested, Started)>,
+    /// Answer that could not be offered yet, with its request.
+    answer: Option<(Requested, RemoteTexture)>,
     begun_at: Option<Instant>,
     /// Viewer that was served last.
     last: usize,
 }
 
 impl Textures {
+    /// Frees everything. The time of the last readback is kept, so that the minimum interval still holds.
+    pub fn reset(&mut self) {
+        (self.inspector, self.reading, self.answer) = (None, None, None);
+    }
+
     /// Offers a texture that has arrived, and starts to read the next requested one. Never waits.
     pub fn advance<W: ?Sized>(
         &mut self,
@@ -40,27 +45,31 @@ impl Textures {
         (executor, plan, frame, world, imports): (&mut Executor, &Plan, &Frame<W>, &W, &Imports),
     ) {
         let executor = &*executor;
-        if let Some((viewer, number, started)) = self.reading.take() {
+        if let Some((requested, started)) = self.reading.take() {
+            let number = requested.request.number;
             match started.try_take(executor.gpu()) {
-                Ok(Err(started)) => self.reading = Some((viewer, number, started)),
-                Ok(Ok(found)) => self.answer = Some((viewer, answer(number, &found))),
-                Err(error) => self.answer = Some((viewer, RemoteTexture::failed(number, error.to_string()))),
+                Ok(Err(started)) => self.reading = Some((requested, started)),
+                Ok(Ok(found)) => self.answer = Some((requested, answer(number, found))),
+                Err(error) => self.answer = Some((requested, RemoteTexture::failed(number, error.to_string()))),
             }
         }
-        if let Some((viewer, texture)) = self.answer.take()
-            && let Err(texture) = mailbox.offer_texture(viewer, texture)
+        if let Some((requested, texture)) = self.answer.take()
+            && let Err(texture) = mailbox.offer_texture(&requested, texture)
         {
-            self.answer = Some((viewer, texture));
+            self.answer = Some((requested, texture));
         }
         let due = self.begun_at.is_none_or(|begun| now.duration_since(begun) >= TEXTURE_INTERVAL);
         if self.reading.is_some() || self.answer.is_some() || !due {
             return;
         }
-        let Some((viewer, request)) = mailbox.take_request(self.last) else { return };
-        (self.last, self.begun_at) = (viewer, Some(now));
-        match self.start(&request, (executor, plan, frame, world, imports)) {
-            Ok(started) => self.reading = Some((viewer, request.number, started)),
-            Err(reason) => self.answer = Some((viewer, RemoteTexture::failed(request.number, reason))),
+        let Some(requested) = mailbox.take_request(self.last) else { return };
+        (self.last, self.begun_at) = (requested.viewer, Some(now));
+        match self.start(&requested.request, (executor, plan, frame, world, imports)) {
+            Ok(started) => self.reading = Some((requested, started)),
+            Err(reason) => {
+                let answer = RemoteTexture::failed(requested.request.number, reason);
+                self.answer = Some((requested, answer));
+            }
         }
     }
 
@@ -89,14 +98,7 @@ impl Textures {
 }
 
 /// Returns an inspected texture as an answer.
-fn answer(number: u32, found: &Inspection) -> RemoteTexture {
-    let texels = &found.texels;
-    RemoteTexture {
-        number,
-        title: Ok(found.title()),
-        format: texels.format,
-        aspect: texels.aspect,
-        size: texels.size,
-        bits: texels.bits.iter().flatten().flat_map(|bits| bits.to_le_bytes()).collect(),
-    }
+fn answer(number: u32, found: Arrived) -> RemoteTexture {
+    let Arrived { target, size, bits } = found;
+    RemoteTexture { number, title: Ok(target.title()), format: target.format, aspect: target.aspect, size, bits }
 }

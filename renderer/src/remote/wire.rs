@@ -22,32 +22,40 @@ pub const PATIENCE: Duration = Duration::from_secs(5);
 pub(super) struct Timed<'s> {
     stream: &'s TcpStream,
     end: Instant,
+    patience: Duration,
 }
 
 impl<'s> Timed<'s> {
     pub(super) fn new(stream: &'s TcpStream, patience: Duration) -> Self {
-        Self { stream, end: Instant::now() + patience }
+        Self { stream, end: Instant::now() + patience, patience }
     }
 }
 
 impl Read for Timed<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let silent = || io::Error::new(ErrorKind::TimedOut, RemoteError::Silent { seconds: self.patience.as_secs() });
         let left = self.end.saturating_duration_since(Instant::now());
         if left.is_zero() {
-            return Err(ErrorKind::TimedOut.into());
+            return Err(silent());
         }
         self.stream.set_read_timeout(Some(left))?;
         let mut stream = self.stream;
-        stream.read(buffer)
+        stream.read(buffer).map_err(|error| if is_timeout(&error) { silent() } else { error })
     }
 }
 
-/// Converts an error of the system.
+/// Returns `true` for a timeout of a socket, which Unix reports as `WouldBlock`.
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock)
+}
+
+/// Converts an error of the system. [`Timed`] reports its own limit; writes wait for [`PATIENCE`].
 pub(super) fn broken(error: &io::Error) -> RemoteError {
-    match error.kind() {
-        // Unix reports a timeout of a socket as `WouldBlock`.
-        ErrorKind::TimedOut | ErrorKind::WouldBlock => RemoteError::Silent { seconds: PATIENCE.as_secs() },
-        _ => RemoteError::Closed { reason: error.to_string() },
+    let own = error.get_ref().and_then(|own| own.downcast_ref::<RemoteError>());
+    match own {
+        Some(own) => own.clone(),
+        None if is_timeout(error) => RemoteError::Silent { seconds: PATIENCE.as_secs() },
+        None => RemoteError::Closed { reason: error.to_string() },
     }
 }
 
@@ -128,9 +136,11 @@ pub(super) fn write(to: &mut impl Write, message: &impl Serialize, max: u32) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::super::message::{FromEngine, FromViewer, RemotePlan, TextureRequest};
+    use super::super::message::{
+        FrameSample, FromEngine, FromViewer, RemotePlan, RemoteTexture, StepSample, TextureRequest,
+    };
     use super::*;
-    use framegraph::{Aspect, Caps, Options};
+    use framegraph::{Aspect, Caps, Format, Options};
 
     /// SplitMix64 (Steele, Lea, Flood 2014).
     fn random(state: &mut u64) -> u64 {
@@ -164,16 +174,74 @@ mod tests {
 
     #[test]
     fn messages_are_decoded_as_encoded() {
-        let bytes = encode(&plan(), MAX_ANSWER_BYTES).expect("it is short");
-        assert_eq!(read::<FromEngine>(&mut bytes.as_slice(), MAX_ANSWER_BYTES), Ok(plan()));
-        // Messages describe no fields. A change of this number requires another `VERSION`.
-        assert_eq!((VERSION, bytes.len()), (1, FORM_BYTES), "the form of a message changed: raise `VERSION`");
+        let mut forms = Vec::new();
+        for message in answers() {
+            let bytes = encode(&message, MAX_ANSWER_BYTES).expect("it is short");
+            assert_eq!(read::<FromEngine>(&mut bytes.as_slice(), MAX_ANSWER_BYTES), Ok(message));
+            // Values of a plan are defaults, which change without the form.
+            let is_plan = bytes[4] == 2;
+            forms.push((bytes.len(), if is_plan { 0 } else { hash(&bytes) }));
+        }
         let bytes = encode(&request(), MAX_REQUEST_BYTES).expect("it is short");
         assert_eq!(read::<FromViewer>(&mut bytes.as_slice(), MAX_REQUEST_BYTES), Ok(request()));
+        forms.push((bytes.len(), hash(&bytes)));
+        // Messages describe no fields. A change of these numbers requires another `VERSION`.
+        assert_eq!((VERSION, forms.as_slice()), (1, FORMS.as_slice()), "a message changed: raise `VERSION`");
     }
 
-    /// Size of the message of [`plan`].
-    const FORM_BYTES: usize = 3392;
+    /// Returns one message of each kind, with a different value in each field.
+    fn answers() -> [FromEngine; 6] {
+        let texture = |number, title| RemoteTexture {
+            number,
+            title,
+            format: Format::Rgba16Float,
+            aspect: Aspect::Depth,
+            size: [300, 2],
+            bits: vec![1, 2, 3],
+        };
+        let step = |cpu_ms, gpu_ms| StepSample { cpu_ms, gpu_ms };
+        [
+            FromEngine::Welcome { engine: "engine".into() },
+            FromEngine::Refused { reason: "reason".into() },
+            plan(),
+            FromEngine::Times(FrameSample {
+                frame: 400,
+                compilation: 3,
+                cpu_ms: Some(0.25),
+                gpu_ms: None,
+                steps: vec![step(Some(0.5), None), step(None, Some(0.75))],
+            }),
+            FromEngine::Texture(texture(500, Ok("title".into()))),
+            FromEngine::Texture(texture(501, Err("error".into()))),
+        ]
+    }
+
+    /// FNV-1a of 64 bits (Fowler, Noll, Vo).
+    fn hash(bytes: &[u8]) -> u64 {
+        bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    /// Size and hash of [`answers`] and [`request`]; no hash of the plan.
+    const FORMS: [(usize, u64); 7] = [
+        (12, 0x1e4c_e21e_2fc4_ed6d),
+        (12, 0x3ee2_3044_e725_dbf2),
+        (3392, 0),
+        (39, 0xe405_6b13_7c81_7a55),
+        (23, 0x0f7f_094e_42cf_83ab),
+        (23, 0x8086_a1e9_c1e9_783b),
+        (21, 0x3bc8_c5a0_70af_1335),
+    ];
+
+    #[test]
+    fn silence_is_reported_with_its_limit() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
+        let stream = TcpStream::connect(listener.local_addr().expect("it is bound")).expect("it listens");
+        let error = Timed::new(&stream, Duration::ZERO).read(&mut [0]).map_err(|error| broken(&error));
+        assert_eq!(error, Err(RemoteError::Silent { seconds: 0 }));
+        let patience = Duration::from_millis(1030);
+        let error = read::<FromEngine>(&mut Timed::new(&stream, patience), MAX_ANSWER_BYTES);
+        assert_eq!(error, Err(RemoteError::Silent { seconds: 1 }));
+    }
 
     #[test]
     fn sizes_and_beginnings_are_checked() {

@@ -109,7 +109,20 @@ impl Realized {
         } else {
             self.realize_anew(plan, from)?;
         }
+        // The list is restored after an error too, so that surface textures are released.
         let changing = std::mem::take(&mut self.changing);
+        let updated = self.update(plan, &changing, from);
+        self.changing = changing;
+        updated?;
+        self.compilation = plan.compilation();
+        Ok(())
+    }
+
+    /// Updates the resources that may have changed.
+    ///
+    /// # Errors
+    /// Fails like [`Realized::realize`].
+    fn update(&mut self, plan: &Plan, changing: &[ResourceId], from: &mut Sources<'_>) -> Result<(), ExecuteError> {
         let earlier = |resource: &ResourceId| match plan.graph().resources()[resource.index()].kind {
             Kind::HistoryPrevious { current, age } => Some((current, age)),
             _ => None,
@@ -123,9 +136,7 @@ impl Realized {
             let physical = self.previous(plan, current, age, from.histories);
             self.set(*resource, physical);
         }
-        self.check_shared(plan, &changing)?;
-        (self.changing, self.compilation) = (changing, plan.compilation());
-        Ok(())
+        Ok(self.check_shared(plan, changing)?)
     }
 
     /// Refuses a texture or buffer behind two imports if a pass writes one of them, unless the graph declares that they may alias.

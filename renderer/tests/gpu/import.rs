@@ -97,6 +97,30 @@ fn surface_textures_are_not_cached() -> TestResult {
 }
 
 #[test]
+fn surface_textures_are_released_after_an_error() -> TestResult {
+    let gpu = Gpu::noop()?;
+    let mut bench = Bench::new(&gpu, 8, 8);
+    let desc = TextureDesc::new(Extent::FRAME, Format::Rgba8Unorm);
+    let handles = bench.declare(|frame| {
+        let imports = ["a", "b"].map(|name| frame.graph_mut().import_texture(name, desc, Entry::Defined, Exit::Keep));
+        for import in imports {
+            frame.add_fn("over", |p| p.color(import, Intent::Modify), |_, (), cx| fill_corner(cx, GREEN))?;
+        }
+        Ok::<_, framegraph::DeclareError>(imports)
+    })?;
+    let image = texture(&gpu, 8, TextureFormat::Rgba8Unorm, USES);
+    for handle in handles {
+        bench.imports.surface(handle, &image);
+    }
+    let error = bench.execute().map_err(|error| error.to_string()).err().unwrap_or_default();
+    assert!(error.contains("`a`") && error.contains("`b`"), "one texture is behind two written imports: {error}");
+    for handle in handles {
+        assert_eq!(bench.executor.texture(&bench.plan, handle), None);
+    }
+    Ok(())
+}
+
+#[test]
 fn a_mismatched_import_is_an_error() -> TestResult {
     let gpu = Gpu::noop()?;
     let mut bench = Bench::new(&gpu, 8, 8);

@@ -132,22 +132,28 @@ fn an_override_that_does_not_exist_is_an_error() {
 fn stereo_variants_are_valid_with_multiview() -> Result<(), String> {
     for name in ["prepass", "color"] {
         let pass = variants::pass(name);
-        let features = Features::NONE.with(Feature::STEREO);
-        let shader = resolve(&pass, &features, &[]).map_err(|error| error.to_string())?;
-        assert!(shader.wgsl.contains("view_index"), "{name}");
-        let module = naga::front::wgsl::parse_str(&shader.wgsl).map_err(|error| error.to_string())?;
-        let capabilities = Capabilities::MULTIVIEW | Capabilities::MULTISAMPLED_SHADING;
-        let info = Validator::new(ValidationFlags::all(), capabilities).validate(&module);
-        let info = info.map_err(|error| error.emit_to_string(&shader.wgsl))?;
-        for own in module.entry_points.iter().filter(|own| ["vs_main", "vs_opaque", "fs_main"].contains(&&*own.name)) {
-            let (module, info) = pipeline_constants::process_overrides(
-                &module,
-                &info,
-                Some((own.stage, &own.name)),
-                &Default::default(),
-            )
-            .map_err(|error| error.to_string())?;
-            vulkan(&Entry { module: &module, info: &info, stage: own.stage, name: &own.name })?;
+        for features in [Features::NONE, Features::NONE.with(Feature::INSTANCE_STREAM)] {
+            let features = features.with(Feature::STEREO);
+            let shader = resolve(&pass, &features, &[]).map_err(|error| error.to_string())?;
+            assert!(shader.wgsl.contains("view_index"), "{name}");
+            let module = naga::front::wgsl::parse_str(&shader.wgsl).map_err(|error| error.to_string())?;
+            let capabilities = Capabilities::MULTIVIEW | Capabilities::MULTISAMPLED_SHADING;
+            let info = Validator::new(ValidationFlags::all(), capabilities).validate(&module);
+            let info = info.map_err(|error| error.emit_to_string(&shader.wgsl))?;
+            for own in module
+                .entry_points
+                .iter()
+                .filter(|own| ["vs_main", "vs_opaque", "vs_mask", "fs_main", "fs_mask"].contains(&&*own.name))
+            {
+                let (module, info) = pipeline_constants::process_overrides(
+                    &module,
+                    &info,
+                    Some((own.stage, &own.name)),
+                    &Default::default(),
+                )
+                .map_err(|error| error.to_string())?;
+                vulkan(&Entry { module: &module, info: &info, stage: own.stage, name: &own.name })?;
+            }
         }
     }
     Ok(())

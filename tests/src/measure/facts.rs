@@ -142,16 +142,13 @@ pub fn cases() -> [Case; 6] {
         Case { name, scene, nits, background, asked, ev100: 10.5, size_px: SIZE_PX }
     };
     let nothing = case("nothing", ahead(), 1000.0, Background::Constant(Vec3::new(300.0, 500.0, 900.0)));
-
     let mut ball = ahead();
     put(&mut ball, "ball", sphere(0.5, 24, 12), matt("ball", Vec3::new(0.2, 0.5, 0.7), 0.8), origin);
     let ball = case("ball", ball, 2000.0, Background::Environment);
-
     let mut floor = scene(DVec3::new(0.3, 2.0, 0.4), DVec3::ZERO);
     put(&mut floor, "floor", plane(Vec2::splat(9.0), 1, Vec2::ONE), matt("floor", Vec3::splat(0.4), 0.5), DVec3::ZERO);
     floor.lights.push(sun());
     let floor = case("floor", floor, 1000.0, Background::Environment);
-
     let mut cards = ahead();
     for (i, alpha) in [AlphaMode::Opaque, AlphaMode::Blend].into_iter().enumerate() {
         let mut card =
@@ -214,13 +211,15 @@ pub struct Easel {
     executor: Executor,
     programs: Programs,
     scratch: Scratch,
+    /// Inlines post-processing into shading where the plan allows it; radiance is not stored then.
+    pub inline: bool,
 }
 
 impl Easel {
     /// Creates an easel for a device.
     pub fn new(gpu: &Gpu) -> Self {
         let (executor, programs) = (Executor::new(gpu), Programs::new());
-        Self { gpu: gpu.clone(), executor, programs, scratch: Scratch::new() }
+        Self { gpu: gpu.clone(), executor, programs, scratch: Scratch::new(), inline: true }
     }
 }
 
@@ -297,7 +296,7 @@ impl Drawn {
         size_px: [u32; 2],
         frames: u32,
     ) -> Result<(Vec<u8>, Plan, f64), Box<dyn Error>> {
-        let (Self { case, world, .. }, Easel { gpu, executor, programs, scratch }) = (self, easel);
+        let (Self { case, world, .. }, Easel { gpu, executor, programs, scratch, inline }) = (self, easel);
         let seen = case.view(settings, size_px);
         let view = CameraView::new(&case.scene, &world.lighting.image, &case.background, &seen);
         world.set_view(gpu, ViewId::MAIN, view)?;
@@ -306,7 +305,8 @@ impl Drawn {
         let io = standard(&mut frame, settings, Target::from(output))?;
         frame.graph_mut().readback(io.output)?;
         let mut plan = Plan::new();
-        compile(frame.graph(), &gpu.caps(), &Options::for_frame(size_px[0], size_px[1]), scratch, &mut plan)?;
+        let options = Options { inline: *inline, ..Options::for_frame(size_px[0], size_px[1]) };
+        compile(frame.graph(), &gpu.caps(), &options, scratch, &mut plan)?;
         let mut least_ms = f64::INFINITY;
         std::mem::swap(&mut world.programs, programs);
         for _ in 0..frames {
@@ -322,7 +322,7 @@ impl Drawn {
 }
 
 /// Difference between the pictures with and without feature culling.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Compared {
     /// Culled effects whose error bound is in 8-bit steps.
     pub dropped: EffectSet,
@@ -374,13 +374,7 @@ pub fn compare(easel: &mut Easel, drawn: &mut Drawn, asked: &Settings) -> Result
     };
     let applied = facts.apply(&asked);
     if applied == asked {
-        return Ok(Compared {
-            dropped: EffectSet::NONE,
-            bound_codes: 0.0,
-            largest_codes: 0,
-            beyond: 0,
-            may_be_beyond: 0,
-        });
+        return Ok(Compared::default());
     }
     let (forced, decided) = (drawn.picture(easel, &asked)?, drawn.picture(easel, &applied)?);
     let dropped = facts.dropped();

@@ -106,9 +106,9 @@ fn a_prepass_is_drawn_where_it_saves_more_than_it_costs() {
     assert!(!decided(&Scene::default(), moving).0, "velocity is drawn over its depth");
 }
 
-/// A prepass does not change the picture. It costs a pass, and no load or store unless an effect reads its depth. Such an
-/// effect otherwise draws depth itself: the prepass then costs one load and one store of depth, and geometry is drawn
-/// once less for the effect. With several samples no prepass is declared for it.
+/// A prepass does not change the picture. It costs a pass, and no load or store unless an effect reads its depth.
+/// Without a prepass, the effect draws depth itself. With one, depth is loaded and stored once, and geometry is drawn once
+/// less. With several samples no prepass is declared for an effect.
 #[test]
 fn a_prepass_changes_no_bit_and_costs_at_most_one_load_and_store() -> Result<(), Box<dyn Error>> {
     let Some(gpu) = gpu("a_prepass_changes_no_bit_and_costs_at_most_one_load_and_store") else { return Ok(()) };

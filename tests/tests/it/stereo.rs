@@ -4,7 +4,9 @@ use crate::stage::{gpu, lighting};
 use framegraph::{Extent, Format, Options, Plan, Scratch, Target, Texture, TextureDesc, compile};
 use framegraph_passes::gpu_scene::shadow_views::ShadowSettings;
 use framegraph_passes::gpu_scene::view::Background;
-use framegraph_passes::{CameraView, Handles, Settings, Slot, StageError, ViewId, ViewSettings, World, stages};
+use framegraph_passes::{
+    CameraView, Handles, PreparedScene, Settings, Slot, StageError, ViewId, ViewSettings, World, stages,
+};
 use framegraph_scene::environment::Sky;
 use framegraph_scene::{Scene, progress};
 use framegraph_wgpu::{Executor, Frame, Gpu, Imports, Readback, Subresource};
@@ -62,7 +64,8 @@ fn two_eyes_are_drawn_by_the_passes_of_one() -> Result<(), Box<dyn Error>> {
     let lighting = lighting(&gpu, &Sky::default().environment(32)?, &settings.shading)?;
     let camera = scene.default_camera(f64::from(SIZE[0]) / f64::from(SIZE[1]));
     let seen = ViewSettings { camera, size_px: SIZE, shadows, ..ViewSettings::default() };
-    let both = CameraView::stereo(&scene, &lighting.image, &Background::Environment, &seen, 0.5);
+    let prepared = PreparedScene::new(&scene);
+    let both = CameraView::stereo(&scene, &prepared, &lighting.image, &Background::Environment, &seen, 0.5);
     let eyes = both.eyes.ok_or("a stereo view has eyes")?;
     let alone = eyes.map(|eye| {
         let mut view = CameraView { eyes: None, ..both.clone() };

@@ -8,6 +8,8 @@ use egui::{TextEdit, Ui};
 impl Viewer {
     /// Attaches to an engine at `HOST:PORT`, in place of the previous one. Other threads call `wake` after each message.
     pub fn attach(&mut self, address: &str, wake: impl Fn() + Send + 'static) {
+        // Files that were opened before do not end the connection.
+        self.refresh();
         self.attached = Some(Attached::open(address, wake));
         address.clone_into(&mut self.address);
         add_textures(&mut self.tiles);

@@ -165,10 +165,10 @@ impl Live {
 
     /// Takes the frame back from the thread that works on it. Waits at most the given time.
     pub(super) fn collect(&mut self, session: &mut Session, at_most: Duration) {
-        if let Some(copied) = self.drawing.copying.as_ref().and_then(Job::poll) {
+        if let Some((job, copied)) = self.drawing.copying.as_ref().and_then(|job| Some((job, job.poll()?))) {
             let made = self.drawing.copy.as_ref().map_or(0, |copy| copy.made) + 1;
             let copied = copied.unwrap_or_else(|()| {
-                session.say("internal error: copying a picture ended without a result".into());
+                session.say(job.failure());
                 None
             });
             let copied = copied.map(|(size_px, rgba8)| Copied { size_px, rgba8, made });

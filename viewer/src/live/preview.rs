@@ -69,7 +69,8 @@ pub struct Preview {
     pub saved: Option<Result<String, String>>,
     inspector: Option<Inspector>,
     listed: Option<(String, u64)>,
-    asked: Option<(InspectTarget, u64)>,
+    /// Last request: the target, whether the preview followed, and the number of the frame or else of the plan.
+    asked: Option<(InspectTarget, bool, u64)>,
     reading: bool,
     /// Resource and plane for which the look was chosen.
     looked: Option<(String, usize)>,
@@ -158,7 +159,7 @@ impl Preview {
             self.error = self.name.as_ref().map(|name| format!("`{name}` has no texels in this frame"));
             return None;
         };
-        let asked = (target, if self.follow { frame } else { plans });
+        let asked = (target, self.follow, if self.follow { frame } else { plans });
         if self.reading || self.asked.as_ref() == Some(&asked) {
             return None;
         }

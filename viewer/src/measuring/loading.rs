@@ -41,9 +41,10 @@ pub(super) fn answers(gpu: &Gpu, scene: &str, size: [u32; 2]) -> Result<Answers,
         if is_drawn(&viewer) {
             break;
         }
-        let failed = viewer.live.as_ref().is_none_or(|live| live.running.is_none() && live.doing().is_none());
-        if let Some(message) = viewer.session.messages.last().filter(|_| failed) {
-            return Err(message.clone());
+        let works = |live: &Live| live.doing().is_some() || live.is_drawing() || live.wants_frame();
+        if !viewer.live.as_ref().is_some_and(works) {
+            let message = viewer.session.messages.last().cloned();
+            return Err(message.unwrap_or_else(|| format!("{scene}: no frame was drawn")));
         }
         let screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), vec2(size[0] as f32, size[1] as f32)));
         let time = Some(begun.elapsed().as_secs_f64());

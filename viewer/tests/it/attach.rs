@@ -1,6 +1,6 @@
 //! Attaching to an engine: both programs, and the panels.
 
-use crate::folder;
+use crate::{case, folder, planned, trace_of};
 use framegraph::{ClearValue, DeclareError, Extent, Format, Intent, Order, TextureDesc};
 use framegraph_wgpu::remote::Server;
 use framegraph_wgpu::{FrameLoop, Gpu};
@@ -10,7 +10,7 @@ use std::process::{Command, Output, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
-use viewer::app::{Pane, Session, Viewer};
+use viewer::app::{Pane, Role, Session, Viewer};
 use viewer::attached::Attached;
 use viewer::drawing::Item;
 use viewer::what_if::WhatIf;
@@ -145,14 +145,41 @@ fn panels_show_plan_times_textures_and_what_if_of_an_engine() {
     until(&ctx, &mut viewer, |viewer| names(viewer).len() == 4);
     assert!(viewer.session.against().is_some_and(|before| before.form.passes.len() == 2), "shown as the difference");
 
+    // Another connection does not compare with plans of the previous one.
+    viewer.attach(&address, || {});
+    until(&ctx, &mut viewer, |viewer| viewer.attached.as_ref().is_some_and(Attached::is_complete));
+    assert!(names(&viewer).len() == 4 && viewer.session.against().is_none());
+
     // A texture on demand.
     viewer.turn_to(Pane::Preview);
     let image = viewer.session.plan.as_ref().and_then(|plan| plan.resource("image 1")).map(Item::Resource);
     viewer.select(image);
     let found = |viewer: &Viewer| viewer.attached.as_ref().and_then(|attached| attached.preview.found.clone());
     until(&ctx, &mut viewer, |viewer| found(viewer).is_some());
-    let found = found(&viewer).expect("texels");
-    assert_eq!((found.title.as_str(), found.texels.size), ("image 1@filter 1", [64, 32]));
+    let first = found(&viewer).expect("texels");
+    assert_eq!((first.title.as_str(), first.texels.size), ("image 1@filter 1", [64, 32]));
+
+    // Live, it is read again and again.
+    let mut last = first;
+    viewer.attached.as_mut().expect("an engine").preview.follow = true;
+    for _ in 0..3 {
+        until(&ctx, &mut viewer, |viewer| found(viewer).is_some_and(|found| !Arc::ptr_eq(&found, &last)));
+        last = found(&viewer).expect("texels");
+    }
+    viewer.attached.as_mut().expect("an engine").preview.follow = false;
+
+    // A trace does not end the connection, and a graph does.
+    let path = folder("attach_trace").join("trace.json");
+    std::fs::write(&path, trace_of(&planned("diamond", &framegraph::Caps::wgpu(), &[]), 3, 0)).expect("a file");
+    viewer.open(&path, Role::Shown);
+    until(&ctx, &mut viewer, |viewer| viewer.session.doing().is_none());
+    assert_eq!((viewer.attached.is_some(), &viewer.session.messages), (true, &Vec::new()));
+    viewer.open(&case("diamond"), Role::Shown);
+    until(&ctx, &mut viewer, |viewer| viewer.attached.is_none());
+    assert!(viewer.session.settle(Duration::from_secs(60)) && names(&viewer).contains(&"combine".into()));
+    viewer.attach(&address, || {});
+    until(&ctx, &mut viewer, |viewer| viewer.attached.as_ref().is_some_and(Attached::is_complete));
+    assert_eq!(names(&viewer).len(), 4, "files that were opened before do not end the connection");
 
     // A question about the declared graph.
     let questions = viewer.session.questions.as_mut().expect("a graph");

@@ -12,7 +12,11 @@ fn case(name: &str) -> String {
 }
 
 fn plan(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_plan")).args(args).output().expect("the program starts")
+    Command::new(env!("CARGO_BIN_EXE_plan"))
+        .args(args)
+        .env_remove("UPDATE_GOLDENS")
+        .output()
+        .expect("the program starts")
 }
 
 /// Returns exit code, standard output and standard error.

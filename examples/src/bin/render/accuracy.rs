@@ -10,7 +10,7 @@ use framegraph_passes::quality::{Group, reference};
 use framegraph_scene::picture::encode_png;
 use framegraph_wgpu::{Executor, read_texture};
 use program::clap::Arg;
-use program::cli::option;
+use program::cli::{OPTIONS, option};
 use program::outputs::{Outputs, check_folder};
 use std::ffi::OsString;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub fn options() -> Vec<Arg> {
         ),
         option(
             "compare-with",
-            "OPTIONS",
+            OPTIONS,
             "Compare time and error with this frame under other options, for example --ao sao:quality=high; both are \
              drawn alternately on this device",
         ),
@@ -153,7 +153,7 @@ impl Side {
         let count = self.times_ms.len() as f64;
         let at = |rank: f64| self.times_ms[(rank.round().max(0.0) as usize).min(self.times_ms.len() - 1)];
         let aside = 0.98 * count.sqrt();
-        [at(0.5 * count), at(0.5 * count - aside - 1.0), at(0.5 * count + aside)]
+        [at(0.5 * (count - 1.0)), at(0.5 * count - aside - 1.0), at(0.5 * count + aside)]
     }
 }
 
@@ -162,12 +162,7 @@ impl Side {
 /// # Errors
 /// An input or device failure with a one-line message; invalid options in `other`.
 pub fn compare(args: &Args, other: &str) -> Result<(), Failure> {
-    let words = exchanged(&args.words, other);
-    let asked = match args::parse(words) {
-        Ok(Command::Render(asked)) => *asked,
-        Ok(Command::Help(_)) => return Err(input("--compare-with: help is not an option of a frame")),
-        Err(error) => return Err(input(format!("--compare-with {other}: {error}"))),
-    };
+    let asked = other_frame(args, other).map_err(input)?;
     let truth = draw_candidate(&args.with(&reference(&args.frame())))?.picture;
     let quiet = |args: &Args| Args { trial: true, ..args.clone() };
     let mut sides = [Side::new(args)?, Side::new(&quiet(&asked))?];
@@ -203,6 +198,30 @@ pub fn compare(args: &Args, other: &str) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Parses the frame to compare with. Pictures of another size, scene or camera are not comparable.
+///
+/// # Errors
+/// One line that names the invalid option.
+fn other_frame(args: &Args, other: &str) -> Result<Args, String> {
+    let mut words = exchanged(&args.words, other);
+    // Options that conflict with --compare-with conflict with it in `other` too.
+    words.push("--compare-with=".into());
+    let asked = match args::parse(words) {
+        Ok(Command::Render(asked)) => *asked,
+        Ok(Command::Help(_)) => return Err("--compare-with: help is not an option of a frame".into()),
+        Err(error) => return Err(format!("--compare-with {other}: {error}")),
+    };
+    let views = [
+        ("--size", args.size_px == asked.size_px),
+        ("SCENE", args.scene == asked.scene),
+        ("--camera", (&args.camera, args.camera_from_gltf) == (&asked.camera, asked.camera_from_gltf)),
+    ];
+    match views.iter().find(|(_, same)| !same) {
+        Some((name, _)) => Err(format!("--compare-with {other}: {name} differs; both frames need the same one")),
+        None => Ok(asked),
+    }
+}
+
 /// Returns the command line with the options of `other` instead of their earlier values, and without `--compare-with`.
 fn exchanged(words: &[OsString], other: &str) -> Vec<OsString> {
     let more: Vec<&str> = other.split_whitespace().collect();
@@ -210,7 +229,7 @@ fn exchanged(words: &[OsString], other: &str) -> Vec<OsString> {
     // Names, each with true if its value is another word.
     let mut replaced = vec![("--compare-with".to_owned(), true)];
     for (at, word) in more.iter().enumerate() {
-        let separate = !word.contains('=') && more.get(at + 1).is_some_and(|next| !next.starts_with("--"));
+        let separate = word.contains('=') || more.get(at + 1).is_some_and(|next| !next.starts_with("--"));
         replaced.extend(named(word).map(|name| (name, separate)));
     }
     let mut kept = Vec::new();
@@ -238,6 +257,31 @@ mod tests {
         let line = "spheres --ao sao --compare-with x --no-fxaa --size=9x9";
         assert_eq!(made(line, "--ao gtao"), words("spheres --no-fxaa --size=9x9 --ao gtao"));
         assert_eq!(made(line, "--size 8x8 --no-fxaa"), words("spheres --ao sao --size 8x8 --no-fxaa"));
+        assert_eq!(made("spheres --ao gtao", "--ao=sao"), words("spheres --ao=sao"));
+    }
+
+    #[test]
+    fn both_frames_show_the_same_view() {
+        let checked = |line: &str, other: &str| {
+            let words = line.split(' ').map(OsString::from).chain([format!("--compare-with={other}").into()]);
+            match args::parse(words) {
+                Ok(Command::Render(args)) => other_frame(&args, other).map(|asked| asked.frame.settings.fxaa),
+                other => panic!("{line}: {other:?}"),
+            }
+        };
+        assert_eq!(checked("spheres --size 9x9", "--no-fxaa --size=9x9"), Ok(false));
+        for (other, named) in [
+            ("--size 8x8", "--size differs"),
+            ("columns", "columns: unexpected argument"),
+            ("--camera orbit", "--camera differs"),
+            ("--out a.png", "--out: cannot be used with --compare-with"),
+            ("--help", "help is not an option"),
+        ] {
+            let found = checked("spheres --size 9x9", other);
+            assert!(found.as_ref().is_err_and(|error| error.contains(named)), "{other}: {found:?}");
+        }
+        let found = checked("--size 9x9", "columns");
+        assert!(found.as_ref().is_err_and(|error| error.contains("SCENE differs")), "{found:?}");
     }
 
     #[test]

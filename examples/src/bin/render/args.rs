@@ -309,6 +309,14 @@ mod tests {
     }
 
     #[test]
+    fn options_of_another_frame_are_a_value() {
+        for words in [&["--compare-with", "--no-fxaa"][..], &["--compare-with=--no-fxaa"]] {
+            let found = args(words).map(|found| (found.compare_with, found.frame.settings.fxaa));
+            assert_eq!(found, Ok((Some("--no-fxaa".into()), true)), "{words:?}");
+        }
+    }
+
+    #[test]
     fn the_plan_has_a_neighbour() {
         let found = args(&["--plan", "a/b.txt"]).expect("a sound command line");
         assert_eq!((found.plan, found.dot), (Some("a/b.txt".into()), Some("a/b.dot".into())));

@@ -180,7 +180,7 @@ fn prove(args: &Args, measured: &Measured, choices: &Choices, max_steps: f64) ->
         found.steps
     ));
     let mut frame = finest;
-    choices.iter().zip(&found.options).for_each(|((_, options), index)| (options[*index].apply)(&mut frame));
+    found.apply(&mut frame);
     Ok(args.with(&frame))
 }
 

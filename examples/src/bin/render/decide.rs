@@ -210,9 +210,10 @@ impl FeatureCulling {
         self.survey = SceneSummary::new(scene);
     }
 
-    /// Returns feature culling without history that always keeps these effects.
+    /// Returns feature culling without history that keeps these effects, and those that it always keeps.
     pub fn keeping(&self, kept: EffectSet) -> Self {
-        Self { survey: self.survey.clone(), memory: FactMemory::default(), forced: kept, off: self.off }
+        let forced = kept.iter().fold(self.forced, EffectSet::with);
+        Self { survey: self.survey.clone(), memory: FactMemory::default(), forced, off: self.off }
     }
 
     /// Returns the decisions on all effects of a view; none if effects are forced.

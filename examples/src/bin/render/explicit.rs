@@ -38,6 +38,9 @@ const SEVERAL_FRAMES: [&str; 4] = ["compare-post", "bisect", "turntable", "seque
 /// Options that write or print something of the plan.
 const PLAN_OUTPUTS: [&str; 3] = ["facts", "graph", "what-if"];
 
+/// Options that print more about a single frame.
+const MEASURED: [&str; 3] = ["timing", "effect-costs", "pick"];
+
 /// Options that configure shadows.
 const SHADOW_OPTIONS: [&str; 7] = [
     "cascades",
@@ -67,17 +70,22 @@ const OFF: [(&str, &str); 11] = [
 /// Conflicts: an option, the options it makes useless, and the reason.
 ///
 /// A value after an option matches one of its comma-separated parts, up to a colon.
-const CONFLICTS: [(&str, &[&str], &str); 38] = [
+const CONFLICTS: [(&str, &[&str], &str); 43] = [
     ("budget-ms", &["max-error"], "choose one limit"),
     ("budget-ms", &SEARCHED, "the search chooses it; --preset and --settings set the base frame"),
     ("max-error", &SEARCHED, "the search chooses it; --preset and --settings set the base frame"),
     ("budget-ms", &SEVERAL_FRAMES, "the search is for a single frame"),
     ("max-error", &SEVERAL_FRAMES, "the search is for a single frame"),
-    ("explain-error", &["compare-with", "budget-ms", "max-error"], "it draws its own frames"),
+    ("explain-error", &["compare-with", "budget-ms", "max-error", "guaranteed"], "it draws its own frames"),
     ("explain-error", &SEVERAL_FRAMES, "it is for a single frame"),
     ("explain-error", &SINGLE_FRAME, "it writes only heat maps"),
+    ("explain-error", &PLAN_OUTPUTS, "it writes only heat maps"),
+    ("explain-error", &MEASURED, "it prints only errors"),
+    ("compare-with", &["budget-ms", "max-error", "guaranteed"], "it chooses no options"),
     ("compare-with", &SEVERAL_FRAMES, "it is for a single frame"),
     ("compare-with", &SINGLE_FRAME, "it writes no files"),
+    ("compare-with", &PLAN_OUTPUTS, "it writes no files"),
+    ("compare-with", &MEASURED, "it prints only times and errors of both frames"),
     ("turntable", &SINGLE_FRAME, "it writes its own pictures"),
     ("sequence", &SINGLE_FRAME, "it writes its own pictures"),
     (
@@ -216,6 +224,13 @@ mod tests {
             ("--budget-ms 9 --bisect", "--bisect: cannot be used with --budget-ms"),
             ("--record a.json", "--record: requires --budget-ms or --max-error or --preset"),
             ("--dynamic-resolution 9", "--dynamic-resolution: requires --turntable or --sequence"),
+            ("--compare-with --no-fxaa --budget-ms 9", "--budget-ms: cannot be used with --compare-with"),
+            ("--compare-with --no-fxaa --max-error 9 --guaranteed", "--max-error: cannot be used with --compare-with"),
+            ("--compare-with --no-fxaa --facts f.json", "--facts: cannot be used with --compare-with"),
+            ("--compare-with --no-fxaa --effect-costs", "--effect-costs: cannot be used with --compare-with"),
+            ("--explain-error . --timing", "--timing: cannot be used with --explain-error"),
+            ("--explain-error . --what-if tiler", "--what-if: cannot be used with --explain-error"),
+            ("--explain-error . --pick 1,1", "--pick: cannot be used with --explain-error"),
             ("--sun in-map", "--sun in-map: requires --environment FILE"),
             ("--bisect --facts f.json", "--facts: cannot be used with --bisect"),
             ("--bisect --graph g.ron", "--graph: cannot be used with"),

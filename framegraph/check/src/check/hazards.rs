@@ -5,7 +5,7 @@
 
 use super::finding::Rule;
 use super::rule_input::{Replaced, RuleInput};
-use framegraph::access::{AccessKind, Mode};
+use framegraph::access::{Access, AccessKind, Mode, Range};
 use framegraph::graph::PassFlags;
 use framegraph::id::{PassId, ResourceId, StepId};
 use framegraph::plan::{Attachment, Join, Placement};
@@ -132,23 +132,27 @@ fn inlining(ctx: &RuleInput<'_>, input: ResourceId, replaced: Replaced) {
 
     let mut before: Vec<PassId> = ctx.plan.passes_of(step).iter().map(|m| m.pass).collect();
     before.truncate(before.iter().position(|pass| *pass == replaced.by).unwrap_or(0));
-    let drawn =
-        |pass: &PassId| ctx.users[input.index()].iter().any(|(user, a)| user == pass && a.kind == AccessKind::Color);
-    if let Some(producer) = before.iter().rposition(drawn) {
-        let shader: Vec<_> = std::iter::once(before[producer])
-            .chain(before[producer + 1..].iter().copied().filter(|pass| is_inlined(ctx, *pass)))
-            .chain([replaced.by])
-            .collect();
+    // Resources in the place of the last target of a chain of epilogues.
+    let last = ctx.effective(input, Range::ALL).0;
+    let is_last = |a: &Access| ctx.effective(a.resource, a.range).0 == last;
+    let resolved = samples_of(ctx, step, is_last);
+    let draws = |a: &Access| a.kind == AccessKind::Color && (is_last(a) || resolved.contains(&a.resource));
+    for producer in before.iter().filter(|pass| !is_inlined(ctx, **pass) && graph.accesses_of(**pass).iter().any(draws))
+    {
+        let inlined = before.iter().copied().filter(|pass| is_inlined(ctx, *pass));
+        let shader: Vec<_> = inlined.chain([*producer, replaced.by]).collect();
         require(fits_shader(ctx, &shader, input), "its shader exceeds the bindings of a stage");
     }
 
-    let samples = samples_of(ctx, step, input);
+    let samples = samples_of(ctx, step, |a| a.resource == input);
     for resource in std::iter::once(&input).chain(&samples) {
         let users = ctx.users[resource.index()].iter().filter(|(pass, _)| *pass != replaced.by);
         for (index, (pass, access)) in users.enumerate() {
             let draws = matches!(access.kind, AccessKind::Color | AccessKind::Resolve);
             let here = ctx.plan.pass_steps()[pass.index()] == step;
             require(draws && here, "its input has uses other than its producers");
+            let whole = ctx.parts.covered(*resource, access.range).count() == ctx.parts.all(*resource).len();
+            require(whole || *resource != input, "an attachment has only a part of its input");
             if access.kind == AccessKind::Color && !is_inlined(ctx, *pass) {
                 require(ctx.flag(*pass, PassFlags::TAKES_EPILOGUE), "a producer does not accept an epilogue");
                 require(!ctx.flag(*pass, PassFlags::BLENDS), "a producer blends");
@@ -164,11 +168,13 @@ fn inlining(ctx: &RuleInput<'_>, input: ResourceId, replaced: Replaced) {
     require(ctx.placement(input) == Placement::Inlined, "its input has a placement");
 }
 
-/// Returns `true` if a shader stage can bind what the passes use together, except for `input`, whose value they pass on.
+/// Returns `true` if a shader stage can bind what the passes use together. `input` and inlined resources are values
+/// between the passes, not bindings.
 pub(super) fn fits_shader(ctx: &RuleInput<'_>, passes: &[PassId], input: ResourceId) -> bool {
     let caps = ctx.plan.caps();
     let mut counts = [0; 4];
-    for access in passes.iter().flat_map(|pass| ctx.graph.accesses_of(*pass)).filter(|a| a.resource != input) {
+    let exists = |a: &&Access| a.resource != input && ctx.placement(a.resource) != Placement::Inlined;
+    for access in passes.iter().flat_map(|pass| ctx.graph.accesses_of(*pass)).filter(exists) {
         let is_texture = ctx.texture(access.resource).is_some();
         match access.kind {
             AccessKind::Sampled => counts[0] += 1,
@@ -189,13 +195,13 @@ fn is_inlined(ctx: &RuleInput<'_>, pass: PassId) -> bool {
     ctx.member(pass).is_some_and(|m| m.join == Join::Inlined)
 }
 
-/// Returns the multisampled attachments that passes of the step resolve into `input`.
-fn samples_of(ctx: &RuleInput<'_>, step: StepId, input: ResourceId) -> Vec<ResourceId> {
+/// Returns the multisampled attachments of the step with a resolve that `is_into` accepts.
+fn samples_of(ctx: &RuleInput<'_>, step: StepId, is_into: impl Fn(&Access) -> bool) -> Vec<ResourceId> {
     let mut found = Vec::new();
     for member in ctx.plan.passes_of(step) {
         let accesses = ctx.graph.accesses_of(member.pass);
         let resolves = ctx.accesses_of(member.pass).filter(|(id, _)| !ctx.dropped[*id]).map(|(_, a)| a);
-        for resolve in resolves.filter(|a| a.kind == AccessKind::Resolve && a.resource == input) {
+        for resolve in resolves.filter(|a| a.kind == AccessKind::Resolve && is_into(a)) {
             let from = accesses.iter().find(|a| a.kind == AccessKind::Color && a.slot == resolve.slot);
             found.extend(from.map(|a| a.resource));
         }
@@ -203,8 +209,8 @@ fn samples_of(ctx: &RuleInput<'_>, step: StepId, input: ResourceId) -> Vec<Resou
     found
 }
 
-/// Returns `true` if the target of an inlined pass has the shape of its input: one level and sample of the same size, and
-/// a layer for each layer of the input, all of which the pass reads. A slice among others does not fit.
+/// Returns `true` if the target of an inlined pass has the shape of its input: one level and one sample of the same
+/// size, and as many layers. The pass reads all layers of the input. A slice among others does not fit.
 pub(super) fn same_shape(ctx: &RuleInput<'_>, input: ResourceId, replaced: Replaced) -> bool {
     let (Some(from), Some(to)) = (ctx.texture(input), ctx.texture(replaced.target)) else {
         return false;

@@ -82,7 +82,7 @@ impl Canvas {
         let _ = writeln!(
             self.body,
             "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>",
-            escaped(&escape_controls(text))
+            xml_escaped(&escape_controls(text))
         );
     }
 
@@ -90,7 +90,7 @@ impl Canvas {
     pub(super) fn slanted(&mut self, x: f64, y: f64, text: &str) {
         let length = text.chars().count() as f64 * Ink::Plain.advance();
         self.reach(x + 0.5 * length, y);
-        let text = escaped(&escape_controls(text));
+        let text = xml_escaped(&escape_controls(text));
         let _ = writeln!(
             self.body,
             "<text class=\"p\" x=\"{x:.1}\" y=\"{y:.1}\" transform=\"rotate(-60 {x:.1} {y:.1})\">{text}</text>"
@@ -117,7 +117,7 @@ impl Canvas {
     fn close(&mut self, element: &str, tip: &str) {
         let _ = match tip {
             "" => writeln!(self.body, "/>"),
-            tip => writeln!(self.body, "><title>{}</title></{element}>", escaped(tip)),
+            tip => writeln!(self.body, "><title>{}</title></{element}>", xml_escaped(tip)),
         };
     }
 
@@ -132,8 +132,8 @@ impl Canvas {
     }
 }
 
-/// Escapes text for XML 1.0. Names have been sanitized before.
-pub(super) fn escaped(text: &str) -> String {
+/// Escapes text for XML 1.0. Characters that XML forbids become U+FFFD.
+pub fn xml_escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -31,7 +31,7 @@ impl Effects {
         Choice { size, samples, bloom, tonemapping: Tonemapping::AcesFitted, fxaa }
     }
 
-    /// Returns the scene with a graph in the place of Bevy's post-processing; with bars of the user's pass if `bars`.
+    /// Returns the scene with a graph that replaces Bevy's post-processing. If `bars`, the user's pass adds bars.
     pub fn executed(&self, device: &Device, bars: bool) -> Scene {
         let none = Choice { bloom: false, tonemapping: Tonemapping::None, fxaa: false, ..self.of_bevy() };
         let mut scene = Scene::new(device, &none, |app| {

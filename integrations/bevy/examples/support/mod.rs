@@ -59,7 +59,7 @@ impl Arguments {
     }
 }
 
-/// What the camera renders with.
+/// Target size, samples and effects of the camera.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
     /// Width and height of the picture, in texels.

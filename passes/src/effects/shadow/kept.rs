@@ -73,7 +73,11 @@ struct Held {
 impl KeptShadows {
     /// Returns the indices of the maps to draw, and the reason for each.
     pub fn due(&self, shadows: &ViewShadows) -> Vec<(u16, Redraw)> {
-        let held = self.0.as_ref().filter(|held| held.settings == shadows.settings);
+        self.due_of(&shadows.settings, &shadows.keys())
+    }
+
+    fn due_of(&self, settings: &ShadowSettings, keys: &[MapKey]) -> Vec<(u16, Redraw)> {
+        let held = self.0.as_ref().filter(|held| held.settings == *settings);
         let why = |(number, key): (u16, &MapKey)| {
             let before = held.and_then(|held| held.keys.get(usize::from(number))?.as_ref());
             let why = match before {
@@ -84,7 +88,7 @@ impl KeptShadows {
             };
             Some((number, why))
         };
-        (0..).zip(&shadows.keys()).filter_map(why).collect()
+        (0..).zip(keys).filter_map(why).collect()
     }
 
     /// Declares the maps as an import, and a pass for each layer with maps to draw. The pass draws these maps, or the
@@ -106,7 +110,8 @@ impl KeptShadows {
         if settings.layers() == 0 {
             return Ok(None);
         }
-        let due = self.due(shadows);
+        let keys = shadows.keys();
+        let due = self.due_of(settings, &keys);
         let held = match self.0.take() {
             Some(held) if held.settings == *settings => self.0.insert(held),
             _ => self.0.insert(Held::new(gpu, settings)?),
@@ -120,8 +125,8 @@ impl KeptShadows {
         }
         let bits = due.iter().fold(0_u64, |bits, (number, _)| bits | 1 << number);
         // Maps outside of this view may be overwritten.
-        let keys = shadows.keys().into_iter().enumerate();
-        held.keys = keys.map(|(number, key)| (bits >> number & 1 == 0).then_some(key)).collect();
+        held.keys =
+            keys.into_iter().enumerate().map(|(number, key)| (bits >> number & 1 == 0).then_some(key)).collect();
         let (desc, name) = maps_desc(settings);
         let maps = frame.graph_mut().import_texture(name, desc, Entry::Defined, Exit::Keep);
         let layer = |layer: u16| {

@@ -100,6 +100,10 @@ impl GpuView {
         refill(gpu, &mut self.instances, "instances", BufferUsages::VERTEX, cast_slice(&view.draws.numbers));
         refill(gpu, &mut self.origins, "origins", storage, cast_slice(&view.origins));
         let placements = &view.placements;
+        assert!(
+            !placements.is_released(),
+            "a view is uploaded once; make another one instead of copying `GpuView::view`"
+        );
         let bytes = (placements.count() * size_of::<ObjectUniforms>()) as u64;
         if fit(gpu, &mut self.objects, "objects", BufferUsages::STORAGE, bytes) {
             self.uploaded = Placements::default();
@@ -143,6 +147,9 @@ impl Views {
     ///
     /// # Errors
     /// Fails if the device cannot create a buffer.
+    ///
+    /// # Panics
+    /// Panics for a copy of an uploaded view ([`GpuView::view`]), which no longer has the data for shaders.
     pub fn new(gpu: &Gpu, views: impl IntoIterator<Item = CameraView>) -> Result<Self, DeviceError> {
         gpu.guard("buffers of views", || {
             let view = |(number, view)| GpuView::new(gpu, ViewId(number), view);
@@ -154,6 +161,9 @@ impl Views {
     ///
     /// # Errors
     /// Fails if the view does not exist.
+    ///
+    /// # Panics
+    /// Panics for a copy of an uploaded view ([`GpuView::view`]), which no longer has the data for shaders.
     pub fn set(&mut self, gpu: &Gpu, id: ViewId, view: CameraView) -> Result<(), PassError> {
         let count = self.0.len();
         let own = self.0.get_mut(id.0 as usize).ok_or(PassError::NoView { view: id.0, count })?;

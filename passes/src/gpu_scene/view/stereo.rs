@@ -1,6 +1,7 @@
 //! Stereo views: two eyes that share culling, levels of detail, lights and shadow maps.
 
 use super::{Background, CameraView, ViewSettings, aspect, eye_or_direction};
+use crate::gpu_scene::prepared::PreparedScene;
 use crate::gpu_scene::punctual::LightSearch;
 use crate::light::ibl::ImageLight;
 use framegraph_scene::{Projection, Scene};
@@ -16,6 +17,7 @@ impl CameraView {
     /// those of the eyes. Every light is evaluated everywhere, because light lists belong to the pixels of one camera.
     pub fn stereo(
         scene: &Scene,
+        prepared: &PreparedScene,
         light: &ImageLight,
         background: &Background,
         settings: &ViewSettings,
@@ -44,6 +46,6 @@ impl CameraView {
                 camera: viewer + (viewer.w * place.as_vec3()).extend(0.0),
             }
         };
-        Self { eyes: Some([eye(-1.0), eye(1.0)]), ..Self::new(scene, light, background, &both) }
+        Self { eyes: Some([eye(-1.0), eye(1.0)]), ..Self::prepared(scene, prepared, light, background, &both) }
     }
 }

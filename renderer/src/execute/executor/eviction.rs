@@ -38,7 +38,7 @@ impl Executor {
 
     /// Drops objects that recent frames did not use, and references to surface textures.
     pub(super) fn drop_unused(&mut self) {
-        let Self { caches, textures, buffers, arenas, realized, options, recording, threads, .. } = self;
+        let Self { caches, textures, buffers, arenas, options, recording, threads, .. } = self;
         let mut any = false;
         arenas.evict(options.limits(), |object| {
             any = true;
@@ -53,6 +53,12 @@ impl Executor {
             recording.requests.release_views();
             threads.release_views();
         }
+        self.end_loans();
+    }
+
+    /// Drops references to surface textures, also after a frame that failed.
+    pub(super) fn end_loans(&mut self) {
+        let Self { caches, realized, .. } = self;
         // These textures have no cached requests.
         realized.end_loans(|texture| caches.forget(texture));
     }

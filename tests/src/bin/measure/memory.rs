@@ -32,6 +32,9 @@ pub fn run(words: &[&str]) -> Outcome {
             let together = frame.by_wgpu + frame.placed;
             let share = together as f64 / *apart.get_or_insert(together) as f64;
             let bound = memory.lower_bound_bytes + memory.own_bytes;
+            if together < bound {
+                return Err(format!("{name}: {together} bytes are allocated, below the bound of {bound}").into());
+            }
             let of_bound = together as f64 / bound as f64;
             let planned = memory.bytes + memory.own_bytes;
             let [bound, planned, by_wgpu, placed, together] =
@@ -59,6 +62,8 @@ fn measured(gpu: &Gpu, size_px: [u32; 2], alias: Alias) -> Result<(Memory, Alloc
     };
     let mut stage = Stage::new(gpu, "columns")?;
     let mut frames = FrameLoop::with(gpu, Options { alias, ..Options::default() }, ExecutorOptions::default());
+    // Uploads of the scene end, and free their staging buffers.
+    gpu.queue.submit([]);
     gpu.wait()?;
     let before = frames.executor().allocated();
     stage.draw(&mut frames, &settings, size_px, 0)?;

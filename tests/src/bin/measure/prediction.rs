@@ -18,7 +18,8 @@ pub fn run(words: &[&str]) -> Outcome {
     };
     let mut samples: Vec<Sample> = match std::fs::read_to_string(file) {
         Ok(text) => serde_json::from_str(&text).map_err(|error| format!("{}: {error}", file.display()))?,
-        Err(_) => Vec::new(),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+        Err(error) => return Err(format!("{}: {error}", file.display()).into()),
     };
     let gpu = adapter()?;
     let (mut easel, mut shown) = (Easel::new(&gpu), Shown::default());
@@ -40,6 +41,8 @@ pub fn run(words: &[&str]) -> Outcome {
     ));
     program::line("| option | time: median | 95th percentile | error: median | 95th percentile |");
     program::line("| --- | ---: | ---: | ---: | ---: |");
+    // The file may have more scenes than this run asks for.
+    samples.retain(|sample| sample.scene < count);
     for own in judged(&samples) {
         let [a, b, c, d] = [own.ms[0], own.ms[1], own.steps[0], own.steps[1]].map(|share| 100.0 * share);
         program::line(format_args!("| {} | {a:.0} % | {b:.0} % | {c:.0} % | {d:.0} % |", own.option));

@@ -23,18 +23,8 @@ impl Running {
         let options = self.key.map_or_else(Options::default, |(_, options)| options);
         let features = crate::what_if::Planner::features(&planner);
         let no_cull = modes.0.contains(&Mode::NoCull);
-        let Options { frame: size, order, alias, merge, inline, memoryless, cull, .. } = options;
-        let question = WhatIf {
-            caps: self.screen.gpu.caps(),
-            frame: Some(size),
-            order,
-            alias,
-            cull: cull && !no_cull,
-            merge,
-            inline,
-            memoryless,
-            features,
-        };
+        let cull = options.cull && !no_cull;
+        let question = WhatIf { cull, features, ..WhatIf::of(self.screen.gpu.caps(), &options) };
         (Arc::new(planner), question)
     }
 }

@@ -80,7 +80,14 @@ impl Candidate<'_, '_> {
             Refusal::TargetShape => {
                 let Access { resource: target, range, .. } = *output;
                 let same = same_shape(self.ctx, input.resource, Replaced { by: self.pass, target, range });
+                let is_part = |a: &Access| {
+                    let parts = &self.ctx.parts;
+                    let draws =
+                        matches!(a.kind, AccessKind::Color | AccessKind::Resolve) && a.resource == input.resource;
+                    draws && parts.covered(a.resource, a.range).count() != parts.all(a.resource).len()
+                };
                 !same
+                    || self.members.iter().any(|m| self.ctx.graph.accesses_of(m.pass).iter().any(is_part))
                     || input.range.view.is_some()
                     || !self.ctx.texture(target).is_some_and(|t| t.format.is_resolvable())
             }
@@ -100,9 +107,12 @@ impl Candidate<'_, '_> {
             }),
             Refusal::StorageHazard => self.storage_hazard(),
             Refusal::TooManyBindings => {
-                let inlined = self.members.iter().filter(|m| m.join == Join::Inlined).map(|m| m.pass);
-                let shader: Vec<_> = producers.last().copied().into_iter().chain(inlined).chain([self.pass]).collect();
-                !fits_shader(self.ctx, &shader, input.resource)
+                let inlined: Vec<_> = self.members.iter().filter(|m| m.join == Join::Inlined).map(|m| m.pass).collect();
+                let exceeds = |producer: &PassId| {
+                    let shader = [inlined.as_slice(), &[*producer, self.pass]].concat();
+                    !fits_shader(self.ctx, &shader, input.resource)
+                };
+                producers.iter().filter(|pass| !inlined.contains(pass)).any(exceeds)
             }
             _ => false,
         }
