@@ -35,7 +35,7 @@ impl Imports {
     }
 
     /// Binds an image to an import. `layout` is its layout before the frame; for an import with a declared state
-    /// ([`Entry::Left`](framegraph::Entry::Left)), the state decides instead.
+    /// ([`Entry::Left`]), the state decides instead.
     ///
     /// # Safety
     /// - The image belongs to the device, and stays alive until the GPU has finished the frame.
